@@ -1,0 +1,3 @@
+//! Points, rational rotations, polygons and exact predicates on them.
+mod vec2;
+pub use vec2::Vec2;

@@ -1,0 +1,16 @@
+//! Numbers: integers and rationals behind one seam, certified `f64` intervals, integer
+//! polynomials and real algebraic numbers. Nothing to the right of this module touches a
+//! big-number crate by name.
+
+mod algebraic;
+mod int;
+mod interval;
+pub mod literal;
+mod poly;
+mod rat;
+
+pub use algebraic::Algebraic;
+pub use int::Int;
+pub use interval::Interval;
+pub use poly::Poly;
+pub use rat::Rat;
