@@ -50,8 +50,14 @@ fn dot_plus(a: &Vec2, n: &Vec2, k: Rat) -> Trig {
 fn box_of(points: &[&Vec2]) -> (Interval, Interval) {
     let hull = |f: fn(&Vec2) -> Interval| {
         points.iter().map(|p| f(p)).fold(
-            Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY },
-            |a, b| Interval { lo: a.lo.min(b.lo), hi: a.hi.max(b.hi) },
+            Interval {
+                lo: f64::INFINITY,
+                hi: f64::NEG_INFINITY,
+            },
+            |a, b| Interval {
+                lo: a.lo.min(b.lo),
+                hi: a.hi.max(b.hi),
+            },
         )
     };
     (hull(|p| p.x.interval()), hull(|p| p.y.interval()))
@@ -75,7 +81,13 @@ pub fn patches(frame: &Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> 
     let radius2: Vec<Interval> = ring.vertices.iter().map(|a| a.norm2().interval()).collect();
     let hinge = (Interval::point(0.0), Interval::point(0.0));
     let nearest2: Vec<f64> = (0..m)
-        .map(|i| dist2(box_of(&[&ring.vertices[i], &ring.vertices[ring.next(i)]]), hinge).lo)
+        .map(|i| {
+            dist2(
+                box_of(&[&ring.vertices[i], &ring.vertices[ring.next(i)]]),
+                hinge,
+            )
+            .lo
+        })
         .collect();
     let reach2 = radius2.iter().map(|r| r.hi).fold(0.0, f64::max);
     let mut out = Vec::new();
@@ -125,7 +137,10 @@ fn type_b(
     let n = &oring.normals[j];
     let (q0, q1) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
     let tau = q1 - q0;
-    let (ahead, behind) = (&ring.vertices[ring.next(i)] - a, &ring.vertices[ring.prev(i)] - a);
+    let (ahead, behind) = (
+        &ring.vertices[ring.next(i)] - a,
+        &ring.vertices[ring.prev(i)] - a,
+    );
     let to_hinge = &frame.p0 - q0;
     let past = q1 - &frame.p0;
     let vt = frame.v.dot(&tau);
@@ -141,11 +156,20 @@ fn type_b(
         f1: Trig::constant(frame.v.dot(n)),
         wedge: [dot(&ahead, n), dot(&behind, n)],
         location: [
-            (dot_plus(a, &tau, to_hinge.dot(&tau)), Trig::constant(vt.clone())),
-            (dot_plus(a, &tau, -past.dot(&tau)).neg(), Trig::constant(-vt)),
+            (
+                dot_plus(a, &tau, to_hinge.dot(&tau)),
+                Trig::constant(vt.clone()),
+            ),
+            (
+                dot_plus(a, &tau, -past.dot(&tau)).neg(),
+                Trig::constant(-vt),
+            ),
         ],
         ends: [(a.clone(), q0.clone()), (a.clone(), q1.clone())],
-        flush: [(i as u32, edge_base + j as u32), (ring.prev(i) as u32, edge_base + j as u32)],
+        flush: [
+            (i as u32, edge_base + j as u32),
+            (ring.prev(i) as u32, edge_base + j as u32),
+        ],
     }
 }
 
@@ -167,7 +191,10 @@ fn type_a(
     let q = &oring.vertices[j];
     let w = q - &frame.p0;
     let e = m.dot(a0);
-    let (ahead, behind) = (&oring.vertices[oring.next(j)] - q, &oring.vertices[oring.prev(j)] - q);
+    let (ahead, behind) = (
+        &oring.vertices[oring.next(j)] - q,
+        &oring.vertices[oring.prev(j)] - q,
+    );
     // (w − v·t)·R m − e and (w − v·t)·R τ between a₀·τ and a₁·τ.
     let v = &frame.v;
     let minus_v = -v;

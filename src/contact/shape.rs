@@ -33,7 +33,11 @@ impl Ring {
             let right = out.right_normal();
             normals.push(if solid_left { right } else { -&right });
         }
-        Ring { vertices, normals, convex }
+        Ring {
+            vertices,
+            normals,
+            convex,
+        }
     }
     /// Number of vertices, and of edges.
     pub fn len(&self) -> usize {
@@ -64,7 +68,9 @@ impl PawlShape {
     /// The pawl's ring about its hinge.
     pub fn new(pawl: &Pawl) -> PawlShape {
         let rel = pawl.vertices.iter().map(|p| p - &pawl.hinge).collect();
-        PawlShape { ring: Ring::new(rel, false) }
+        PawlShape {
+            ring: Ring::new(rel, false),
+        }
     }
 }
 

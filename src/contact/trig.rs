@@ -19,7 +19,11 @@ impl Chart {
 
     /// The chart of half-turn h.
     pub fn of_half_turn(h: i64) -> Chart {
-        if h.rem_euclid(2) == 0 { Chart::Rest } else { Chart::Back }
+        if h.rem_euclid(2) == 0 {
+            Chart::Rest
+        } else {
+            Chart::Back
+        }
     }
     /// The other one.
     pub fn other(self) -> Chart {
@@ -54,7 +58,11 @@ impl Trig {
     }
     /// A constant.
     pub fn constant(k: Rat) -> Trig {
-        Trig { c: Rat::zero(), s: Rat::zero(), k }
+        Trig {
+            c: Rat::zero(),
+            s: Rat::zero(),
+            k,
+        }
     }
     /// The quadratic (constant first) that has this function's sign in the chart.
     pub fn form(&self, chart: Chart) -> [Rat; 3] {
@@ -80,18 +88,34 @@ impl Trig {
     }
     /// The negated function.
     pub fn neg(&self) -> Trig {
-        Trig { c: -&self.c, s: -&self.s, k: -&self.k }
+        Trig {
+            c: -&self.c,
+            s: -&self.s,
+            k: -&self.k,
+        }
     }
     /// Multiplied by a scalar.
     pub fn scale(&self, f: &Rat) -> Trig {
-        Trig { c: &self.c * f, s: &self.s * f, k: &self.k * f }
+        Trig {
+            c: &self.c * f,
+            s: &self.s * f,
+            k: &self.k * f,
+        }
     }
     /// The sum.
     pub fn add(&self, o: &Trig) -> Trig {
-        Trig { c: &self.c + &o.c, s: &self.s + &o.s, k: &self.k + &o.k }
+        Trig {
+            c: &self.c + &o.c,
+            s: &self.s + &o.s,
+            k: &self.k + &o.k,
+        }
     }
     /// Derivative with respect to θ.
     pub fn derivative(&self) -> Trig {
-        Trig { c: self.s.clone(), s: -&self.c, k: Rat::zero() }
+        Trig {
+            c: self.s.clone(),
+            s: -&self.c,
+            k: Rat::zero(),
+        }
     }
 }

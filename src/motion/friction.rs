@@ -28,8 +28,14 @@ pub fn stick_time(slice: &Slice, arc: ArcId, from: &Time, mu: &Rat) -> Option<Ti
     }
     let patch = slice.patch(arc)?;
     match patch.contact {
-        Contact::Obstacle { kind: ContactKind::B, .. } => type_b(slice, arc, patch, from, mu),
-        Contact::Obstacle { kind: ContactKind::A, .. } => type_a(slice, arc, patch, from, mu),
+        Contact::Obstacle {
+            kind: ContactKind::B,
+            ..
+        } => type_b(slice, arc, patch, from, mu),
+        Contact::Obstacle {
+            kind: ContactKind::A,
+            ..
+        } => type_a(slice, arc, patch, from, mu),
         Contact::Limit(_) => None,
     }
 }
@@ -82,7 +88,9 @@ fn type_b(slice: &Slice, id: ArcId, patch: &Patch, from: &Time, mu: &Rat) -> Opt
         }
     }
     walk(from, &arc.end().t, breaks, |t| {
-        slice.height_at(arc, t).is_some_and(|x| inside(&|p| x.sign_of(p)))
+        slice
+            .height_at(arc, t)
+            .is_some_and(|x| inside(&|p| x.sign_of(p)))
     })
 }
 
@@ -103,7 +111,12 @@ fn type_a(slice: &Slice, id: ArcId, patch: &Patch, from: &Time, mu: &Rat) -> Opt
         -(&speed2 * &m2),
     ];
     let (d, k) = (Poly::from_rats(&d), Poly::from_rats(&k));
-    let breaks = d.real_roots().into_iter().chain(k.real_roots()).map(Time::at).collect();
+    let breaks = d
+        .real_roots()
+        .into_iter()
+        .chain(k.real_roots())
+        .map(Time::at)
+        .collect();
     walk(from, &slice.arc(id).end().t, breaks, |t| {
         d.sign_at(t) * e.sign() > 0 && k.sign_at(t) > 0
     })

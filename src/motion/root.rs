@@ -49,7 +49,7 @@ pub fn first_collision(
                 (None, None) => t + &Rat::one(),
             };
             let at = &v.scale(&Rat::midpoint(t, &next));
-            let moved = Polygon::new(vec![body.vertices.iter().map(|p| p + at).collect()]);
+            let moved = Polygon::new(body.vertices.iter().map(|p| p + at).collect(), Vec::new());
             if interiors_intersect(&moved, &fixed) {
                 best = Some(t.clone());
                 break;
@@ -57,8 +57,11 @@ pub fn first_collision(
         }
     }
     let best = best?;
-    let mut contacts: Vec<RootContact> =
-        touches.into_iter().filter(|t| t.0 == best).map(|t| t.1).collect();
+    let mut contacts: Vec<RootContact> = touches
+        .into_iter()
+        .filter(|t| t.0 == best)
+        .map(|t| t.1)
+        .collect();
     contacts.sort();
     contacts.dedup();
     Some((best, contacts))
@@ -66,9 +69,7 @@ pub fn first_collision(
 
 /// The region of an obstacle.
 pub fn obstacle_polygon(o: &Obstacle) -> Polygon {
-    let mut rings = vec![o.vertices.clone()];
-    rings.extend(o.holes.iter().cloned());
-    Polygon::new(rings)
+    Polygon::new(o.vertices.clone(), o.holes.clone())
 }
 
 fn collect(

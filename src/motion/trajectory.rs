@@ -18,15 +18,24 @@ pub struct Angle {
 impl Angle {
     /// θ = 0, where the spring rests.
     pub fn rest() -> Angle {
-        Angle { half_turn: 0, x: Algebraic::from(Rat::zero()) }
+        Angle {
+            half_turn: 0,
+            x: Algebraic::from(Rat::zero()),
+        }
     }
     /// The orientation with tan(θ/2) = u, −π < θ < π.
     pub fn from_tan_half(u: &Rat) -> Angle {
         let one = Rat::one();
         if u.abs() <= one {
-            Angle { half_turn: 0, x: Algebraic::from(u.clone()) }
+            Angle {
+                half_turn: 0,
+                x: Algebraic::from(u.clone()),
+            }
         } else {
-            Angle { half_turn: i64::from(u.sign()), x: Algebraic::from(-u.recip()) }
+            Angle {
+                half_turn: i64::from(u.sign()),
+                x: Algebraic::from(-u.recip()),
+            }
         }
     }
     /// The chart of its half-turn.
@@ -48,7 +57,10 @@ impl Angle {
             Chart::Back if self.x.sign() == 0 => None,
             Chart::Back => {
                 let minus_one = Poly::constant(-Int::one());
-                Some(self.x.ratio(&minus_one, &Poly::new(vec![Int::zero(), Int::one()])))
+                Some(
+                    self.x
+                        .ratio(&minus_one, &Poly::new(vec![Int::zero(), Int::one()])),
+                )
             }
         }
     }
@@ -66,8 +78,11 @@ impl Angle {
         if self.half_turn == o.half_turn {
             return self.x.cmp(&o.x);
         }
-        let (lo, hi, swap) =
-            if self.half_turn < o.half_turn { (self, o, false) } else { (o, self, true) };
+        let (lo, hi, swap) = if self.half_turn < o.half_turn {
+            (self, o, false)
+        } else {
+            (o, self, true)
+        };
         let seam = hi.half_turn - lo.half_turn == 1
             && lo.x.cmp_rat(&Rat::one()).is_eq()
             && hi.x.cmp_rat(&Rat::from(-1)).is_eq();

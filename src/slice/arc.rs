@@ -122,7 +122,10 @@ impl Arc {
     }
     /// Computes the enclosures from the ends.
     pub(super) fn with_spans(mut self) -> Arc {
-        let hull = |a: Interval, b: Interval| Interval { lo: a.lo.min(b.lo), hi: a.hi.max(b.hi) };
+        let hull = |a: Interval, b: Interval| Interval {
+            lo: a.lo.min(b.lo),
+            hi: a.hi.max(b.hi),
+        };
         self.t_span = hull(self.lo.t.interval(), self.hi.t.interval());
         self.x_span = hull(self.lo.x.interval(), self.hi.x.interval());
         self

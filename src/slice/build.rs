@@ -154,7 +154,10 @@ impl Filter {
             f1: enclose(&p.f1, chart),
             wedge: [enclose(&p.wedge[0], chart), enclose(&p.wedge[1], chart)],
             location: [0, 1].map(|k| {
-                (enclose(&p.location[k].0, chart), enclose(&p.location[k].1, chart))
+                (
+                    enclose(&p.location[k].0, chart),
+                    enclose(&p.location[k].1, chart),
+                )
             }),
         }
     }
@@ -217,7 +220,10 @@ impl Builder {
     fn new(frame: Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> Builder {
         let pawl_lines = number_lines(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
         let obstacle_lines = number_lines(
-            obstacles.iter().flat_map(|o| &o.rings).flat_map(|r| r.normals.iter().zip(&r.vertices)),
+            obstacles
+                .iter()
+                .flat_map(|o| &o.rings)
+                .flat_map(|r| r.normals.iter().zip(&r.vertices)),
         );
         let speed2 = frame.v.norm2();
         Builder {
@@ -236,7 +242,11 @@ impl Builder {
     }
 
     fn roots(&self, p: &Poly) -> Vec<Algebraic> {
-        if p.is_zero() { Vec::new() } else { p.real_roots_in(&self.minus_one, &self.one) }
+        if p.is_zero() {
+            Vec::new()
+        } else {
+            p.real_roots_in(&self.minus_one, &self.one)
+        }
     }
 
     fn named_roots(&mut self, name: Name, poly: impl FnOnce() -> Poly) -> Rc<[Rc<Named>]> {
@@ -246,7 +256,12 @@ impl Builder {
         let list: Rc<[Rc<Named>]> = self
             .roots(&poly())
             .into_iter()
-            .map(|x| Rc::new(Named { x, t: std::cell::OnceCell::new() }))
+            .map(|x| {
+                Rc::new(Named {
+                    x,
+                    t: std::cell::OnceCell::new(),
+                })
+            })
             .collect();
         self.named.insert(name, list.clone());
         list
@@ -304,7 +319,12 @@ impl Builder {
         });
         let [(rp0, rq0), (rp1, rq1)] = pairs;
         let id = self.curves.len() as CurveId;
-        self.curves.push(Curve { p, q, rp: [rp0, rp1], rq: [rq0, rq1] });
+        self.curves.push(Curve {
+            p,
+            q,
+            rp: [rp0, rp1],
+            rq: [rq0, rq1],
+        });
         self.curve_ids.insert(key, id);
         Some((id, flip))
     }
@@ -350,10 +370,16 @@ impl Builder {
     fn wedge_breaks(&mut self, patch: &Patch, chart: Chart, out: &mut Vec<Break>) {
         for k in 0..2 {
             let (pe, oe) = patch.flush[k];
-            let key =
-                Name::Flush(self.pawl_lines[pe as usize], self.obstacle_lines[oe as usize], chart);
+            let key = Name::Flush(
+                self.pawl_lines[pe as usize],
+                self.obstacle_lines[oe as usize],
+                chart,
+            );
             for n in self.named_roots(key, || patch.wedge[k].poly(chart)).iter() {
-                out.push(Break { x: n.x.clone(), point: Some(n.clone()) });
+                out.push(Break {
+                    x: n.x.clone(),
+                    point: Some(n.clone()),
+                });
             }
         }
     }
@@ -366,7 +392,10 @@ impl Builder {
 
     fn seams(&self, out: &mut Vec<Break>) {
         for r in [&self.minus_one, &self.one] {
-            out.push(Break { x: Algebraic::from(r.clone()), point: None });
+            out.push(Break {
+                x: Algebraic::from(r.clone()),
+                point: None,
+            });
         }
     }
 
@@ -384,14 +413,23 @@ impl Builder {
         // Vertex on vertex first: where several names fall on one point the first is kept.
         for (a, qv) in &patch.ends {
             for n in self.vertex_vertex(a, qv, chart).iter() {
-                breaks.push(Break { x: n.x.clone(), point: Some(n.clone()) });
+                breaks.push(Break {
+                    x: n.x.clone(),
+                    point: Some(n.clone()),
+                });
             }
         }
         self.wedge_breaks(patch, chart, &mut breaks);
         // dt/dx = −(P'Q − PQ')/Q².
         let bend = rp.derivative() * rq - rp * rq.derivative();
-        for n in self.named_roots(Name::Tangency(curve, chart), || bend.clone()).iter() {
-            breaks.push(Break { x: n.x.clone(), point: Some(n.clone()) });
+        for n in self
+            .named_roots(Name::Tangency(curve, chart), || bend.clone())
+            .iter()
+        {
+            breaks.push(Break {
+                x: n.x.clone(),
+                point: Some(n.clone()),
+            });
         }
         self.plain_breaks(rq, &mut breaks);
         if rq.degree() != q.degree() || rp.degree() != p.degree() {
@@ -404,7 +442,10 @@ impl Builder {
         for w in breaks.windows(2) {
             let s = Algebraic::between(&w[0].x, &w[1].x);
             let si = s.interval();
-            if !filter.valid_graph(si).unwrap_or_else(|| valid_graph(patch, chart, &s)) {
+            if !filter
+                .valid_graph(si)
+                .unwrap_or_else(|| valid_graph(patch, chart, &s))
+            {
                 continue;
             }
             let bend_sign = bend.sign_at(&s);
@@ -425,7 +466,9 @@ impl Builder {
                     chart,
                     curve,
                     branch: up * flip,
-                    shape: Shape::Graph { rising: bend_sign < 0 },
+                    shape: Shape::Graph {
+                        rising: bend_sign < 0,
+                    },
                     side: if up > 0 { Side::Above } else { Side::Below },
                     lo: end(&w[0]),
                     hi: end(&w[1]),
@@ -461,12 +504,22 @@ impl Builder {
                     continue;
                 }
                 let (a, qv) = &patch.ends[k];
-                let point = self.vertex_vertex(a, qv, chart).iter().find(|n| n.x == x).cloned();
+                let point = self
+                    .vertex_vertex(a, qv, chart)
+                    .iter()
+                    .find(|n| n.x == x)
+                    .cloned();
                 let end = match point.as_ref().and_then(|n| n.t.get().map(|t| (n, t))) {
-                    Some((n, t)) => End { x: n.x.clone(), t: t.clone() },
+                    Some((n, t)) => End {
+                        x: n.x.clone(),
+                        t: t.clone(),
+                    },
                     None => {
                         let (num, den) = integral_pair(&l0.form(chart), &l1.form(chart));
-                        End { x: x.clone(), t: Time::ratio(&x, -&num, den) }
+                        End {
+                            x: x.clone(),
+                            t: Time::ratio(&x, -&num, den),
+                        }
                     }
                 };
                 if slope > 0 {
@@ -475,7 +528,9 @@ impl Builder {
                     hi = Some(end);
                 }
             }
-            let (Some(lo), Some(hi)) = (lo, hi) else { continue };
+            let (Some(lo), Some(hi)) = (lo, hi) else {
+                continue;
+            };
             if lo.t >= hi.t {
                 continue;
             }
@@ -487,7 +542,10 @@ impl Builder {
             {
                 let cut = Time::ratio(&x, -rp, rq.clone());
                 if ends[0].t < cut && cut < hi.t {
-                    ends.push(End { x: x.clone(), t: cut });
+                    ends.push(End {
+                        x: x.clone(),
+                        t: cut,
+                    });
                 }
             }
             ends.push(hi);
@@ -544,13 +602,15 @@ impl Builder {
         let t = Time::from(c);
         for w in breaks.windows(2) {
             let s = Algebraic::between(&w[0].x, &w[1].x);
-            if !wedge_ok(patch, chart, &s)
-                || location.iter().any(|l| l.value(chart, &s).sign() < 0)
+            if !wedge_ok(patch, chart, &s) || location.iter().any(|l| l.value(chart, &s).sign() < 0)
             {
                 continue;
             }
             let growing = patch.f1.value(chart, &s).sign() > 0;
-            let end = |b: &Break| End { x: b.x.clone(), t: t.clone() };
+            let end = |b: &Break| End {
+                x: b.x.clone(),
+                t: t.clone(),
+            };
             self.arcs.push(
                 Arc {
                     contact: patch.contact,
@@ -577,7 +637,11 @@ impl Builder {
             (Chart::Back, -u.recip())
         };
         // At the seam the copy at x = −1 serves.
-        let (chart, x) = if x == self.one { (chart.other(), self.minus_one.clone()) } else { (chart, x) };
+        let (chart, x) = if x == self.one {
+            (chart.other(), self.minus_one.clone())
+        } else {
+            (chart, x)
+        };
         let p = [-u.numer(), u.denom().clone(), Int::zero()];
         let q = [Int::zero(), Int::zero(), Int::zero()];
         let curve = self.curves.len() as CurveId;
@@ -585,7 +649,10 @@ impl Builder {
         let rq = [Poly::zero(), Poly::zero()];
         self.curves.push(Curve { p, q, rp, rq });
         let x = Algebraic::from(x);
-        let end = |t: Rat| End { x: x.clone(), t: Time::from(t) };
+        let end = |t: Rat| End {
+            x: x.clone(),
+            t: Time::from(t),
+        };
         self.arcs.push(
             Arc {
                 contact: Contact::Limit(which),
@@ -625,7 +692,9 @@ fn reduce(p: &Poly, q: &Poly, g: &Poly) -> (Poly, Poly) {
 
 /// p/g by long division, for a primitive divisor.
 fn quotient(p: &Poly, g: &Poly) -> Poly {
-    let (Some(dp), Some(dg)) = (p.degree(), g.degree()) else { return Poly::zero() };
+    let (Some(dp), Some(dg)) = (p.degree(), g.degree()) else {
+        return Poly::zero();
+    };
     let mut rest = p.coeffs().to_vec();
     let lead = g.coeff(dg);
     let mut out = vec![Int::zero(); (dp + 1).saturating_sub(dg)];

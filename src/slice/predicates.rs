@@ -50,7 +50,9 @@ fn proportional(a: &Poly, b: &Poly) -> Option<(Int, Int)> {
         return None;
     }
     let (ca, cb) = (a.coeff(d), b.coeff(d));
-    (0..d).all(|i| a.coeff(i) * &cb == b.coeff(i) * &ca).then_some((ca, cb))
+    (0..d)
+        .all(|i| a.coeff(i) * &cb == b.coeff(i) * &ca)
+        .then_some((ca, cb))
 }
 
 impl Slice {
@@ -76,7 +78,10 @@ impl Slice {
             h.real_roots_in(&Rat::from(-1), &Rat::one())
                 .into_iter()
                 .filter(|x| x.sign_of(q) != 0)
-                .map(|x| Cross { t: Time::ratio(&x, -p, q.clone()), x })
+                .map(|x| Cross {
+                    t: Time::ratio(&x, -p, q.clone()),
+                    x,
+                })
                 .collect()
         };
         lock().insert(key, list.clone());
@@ -97,7 +102,9 @@ impl Slice {
             Shape::Graph { .. } => {
                 let (p, q) = self.curve(arc.curve).reduced(arc.chart);
                 let f = p.scale(t.denom()) + q.scale(t.numer());
-                f.real_roots_in(&Rat::from(-1), &Rat::one()).into_iter().find(|x| arc.spans_x(x))
+                f.real_roots_in(&Rat::from(-1), &Rat::one())
+                    .into_iter()
+                    .find(|x| arc.spans_x(x))
             }
         }
     }
@@ -134,13 +141,25 @@ impl Slice {
                 up: z.x < arc.hi.x,
                 down: arc.lo.x < z.x,
             },
-            Shape::Level => {
-                Germs { left: arc.lo.t < z.t, right: z.t < arc.hi.t, up: false, down: false }
-            }
+            Shape::Level => Germs {
+                left: arc.lo.t < z.t,
+                right: z.t < arc.hi.t,
+                up: false,
+                down: false,
+            },
             Shape::Graph { rising } => {
                 let (below, above) = (arc.lo.x < z.x, z.x < arc.hi.x);
-                let (left, right) = if rising { (below, above) } else { (above, below) };
-                Germs { left, right, up: false, down: false }
+                let (left, right) = if rising {
+                    (below, above)
+                } else {
+                    (above, below)
+                };
+                Germs {
+                    left,
+                    right,
+                    up: false,
+                    down: false,
+                }
             }
         }
     }
@@ -180,7 +199,11 @@ impl Slice {
         }
         if a.curve == b.curve {
             // Coincident, or the two branches that meet in a tangency.
-            return if a.branch == b.branch { Ordering::Equal } else { a.lo.x.cmp(&b.lo.x) };
+            return if a.branch == b.branch {
+                Ordering::Equal
+            } else {
+                a.lo.x.cmp(&b.lo.x)
+            };
         }
         let (sa, sb) = (self.slope(a, z), self.slope(b, z));
         let by_slope = if sa.below(&sb) {
@@ -258,7 +281,11 @@ impl Slice {
                     Ordering::Less
                 } else {
                     let passed = *t >= self.time_at(arc, x);
-                    if passed == rising { Ordering::Greater } else { Ordering::Less }
+                    if passed == rising {
+                        Ordering::Greater
+                    } else {
+                        Ordering::Less
+                    }
                 }
             }
             _ => arc.lo.x.cmp(x),
@@ -280,7 +307,11 @@ impl Slice {
             _ => {}
         }
         if a.curve == b.curve {
-            return if a.branch == b.branch { Ordering::Equal } else { a.lo.x.cmp(&b.lo.x) };
+            return if a.branch == b.branch {
+                Ordering::Equal
+            } else {
+                a.lo.x.cmp(&b.lo.x)
+            };
         }
         let mut next = a.end().t.clone().min(b.end().t.clone());
         for c in self.shared_crossings(a, b) {

@@ -33,13 +33,21 @@ impl Time {
         let interval = num.eval_interval(at) / den.eval_interval(at);
         Time(Arc::new(Inner {
             interval,
-            form: Form::Ratio { x: x.clone(), num, den },
+            form: Form::Ratio {
+                x: x.clone(),
+                num,
+                den,
+            },
             exact: OnceLock::new(),
         }))
     }
     /// The instant that is the algebraic number x itself.
     pub fn at(x: Algebraic) -> Time {
-        Time::ratio(&x, Poly::new(vec![Int::zero(), Int::one()]), Poly::constant(Int::one()))
+        Time::ratio(
+            &x,
+            Poly::new(vec![Int::zero(), Int::one()]),
+            Poly::constant(Int::one()),
+        )
     }
     /// This instant on a clock that started `by` earlier.
     pub fn shift(&self, by: &Rat) -> Time {
@@ -48,9 +56,11 @@ impl Time {
         }
         match &self.0.form {
             Form::Rational(r) => Time::from(r + by),
-            Form::Ratio { x, num, den } => {
-                Time::ratio(x, num.scale(by.denom()) + den.scale(by.numer()), den.scale(by.denom()))
-            }
+            Form::Ratio { x, num, den } => Time::ratio(
+                x,
+                num.scale(by.denom()) + den.scale(by.numer()),
+                den.scale(by.denom()),
+            ),
         }
     }
     /// a + b·t exactly.
@@ -78,9 +88,10 @@ impl Time {
     /// Numerator and denominator as polynomials of the position x that this time was made at.
     pub fn parts(&self) -> (Poly, Poly) {
         match &self.0.form {
-            Form::Rational(r) => {
-                (Poly::constant(r.numer().clone()), Poly::constant(r.denom().clone()))
-            }
+            Form::Rational(r) => (
+                Poly::constant(r.numer().clone()),
+                Poly::constant(r.denom().clone()),
+            ),
             Form::Ratio { num, den, .. } => (num.clone(), den.clone()),
         }
     }
