@@ -173,9 +173,9 @@ fn sorted_for_sweep(polygon: &Polygon) -> Vec<(EdgeRef, Box2)> {
     let whole = polygon.bounds();
     let width = |b: &Box2| (b.x.hi - b.x.lo) / (whole.x.hi - whole.x.lo);
     let height = |b: &Box2| (b.y.hi - b.y.lo) / (whole.y.hi - whole.y.lo);
-    let (across, up) = edges.iter().fold((0.0, 0.0), |(w, h), (_, b)| {
-        (w + width(b), h + height(b))
-    });
+    let (across, up) = edges
+        .iter()
+        .fold((0.0, 0.0), |(w, h), (_, b)| (w + width(b), h + height(b)));
     // Only the speed hangs on this choice.
     if up < across {
         for (_, b) in &mut edges {

@@ -229,10 +229,7 @@ impl SortedAlong {
 
 /// Where a piece that does not lie on B's boundary runs: one point of it tells.
 fn side_of_middle(b: &Polygon, from: &Vec2, to: &Vec2) -> Piece {
-    let middle = Vec2::new(
-        Rat::midpoint(&from.x, &to.x),
-        Rat::midpoint(&from.y, &to.y),
-    );
+    let middle = Vec2::new(Rat::midpoint(&from.x, &to.x), Rat::midpoint(&from.y, &to.y));
     match b.locate(&middle) {
         Location::Inside => Piece::Inside,
         Location::Outside => Piece::Outside,

@@ -35,20 +35,14 @@ pub(crate) fn meet_pins(p: [Pin<'_>; 2], q: [Pin<'_>; 2]) -> Meeting {
     if !p[0].near.hull(p[1].near).meets(&q[0].near.hull(q[1].near)) {
         return Meeting::Apart;
     }
-    let q_sides = [
-        orient_pins(p[0], p[1], q[0]),
-        orient_pins(p[0], p[1], q[1]),
-    ];
+    let q_sides = [orient_pins(p[0], p[1], q[0]), orient_pins(p[0], p[1], q[1])];
     if q_sides == [0, 0] {
         return meet_on_a_line(p.map(|e| e.at), q.map(|e| e.at));
     }
     if q_sides[0] * q_sides[1] > 0 {
         return Meeting::Apart;
     }
-    let p_sides = [
-        orient_pins(q[0], q[1], p[0]),
-        orient_pins(q[0], q[1], p[1]),
-    ];
+    let p_sides = [orient_pins(q[0], q[1], p[0]), orient_pins(q[0], q[1], p[1])];
     if p_sides[0] * p_sides[1] > 0 {
         return Meeting::Apart;
     }
