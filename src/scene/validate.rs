@@ -236,7 +236,7 @@ fn explain(defect: &Defect, rings: &RingPlaces<'_>) -> (Span, &'static str, Stri
             "remove the vertex".to_owned(),
         ),
         Defect::EdgesMeet { first, second, how } => {
-            let (verb, at) = match how {
+            let (verb, at) = match &**how {
                 Meeting::Cross(p) => ("crosses", format!(" at {}", show(p))),
                 Meeting::Touch(p) => ("touches", format!(" at {}", show(p))),
                 Meeting::Overlap(p, q) => ("overlaps", format!(" from {} to {}", show(p), show(q))),
