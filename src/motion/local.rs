@@ -40,10 +40,14 @@ impl Place {
     pub(super) fn new(z: Point, half_turn: i64) -> Place {
         let one = Rat::one();
         let minus_one = Rat::from(-1);
+        // On the seam x is rational, and with it every time that is a function of x.
         let mirrored = |x: &Rat| Point {
             chart: z.chart.other(),
             x: Algebraic::from(x.clone()),
-            t: z.t.clone(),
+            t: match z.t.as_rat() {
+                Some(_) => z.t.clone(),
+                None => z.t.exact().to_rat().map_or_else(|| z.t.clone(), Time::from),
+            },
             on: z.on.clone(),
         };
         if z.x.cmp_rat(&one).is_eq() {

@@ -273,7 +273,9 @@ impl<'a> Conversion<'a> {
             return None;
         }
         if let Kind::Table(entries) = &node.kind {
-            let other = entries.iter().find(|e| e.key != "reverse");
+            // An unknown key has its own message.
+            let known = ["velocity", "duration", "until"];
+            let other = entries.iter().find(|e| known.contains(&e.key.as_str()));
             if let Some(other) = other {
                 self.error(
                     other.key_span,

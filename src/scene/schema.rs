@@ -4,14 +4,43 @@
 //! may be left out is optional. Nothing is read through them, as they would forget the places and
 //! the text of numbers; a test holds their keys against those of the reader.
 
+use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde_json::Value;
 use std::borrow::Cow;
 
 /// The JSON Schema of a scene file (draft 2020-12), as `snapfit schema scene` prints it.
 pub fn scene_schema() -> Schema {
     let mut schema = schemars::schema_for!(SceneDocument);
+    without_null(&mut schema);
     schema.insert("$id".to_owned(), "snapfit.scene/1".into());
     schema
+}
+
+/// What may be left out of a file may not be null instead, as `schemars` takes an `Option` to
+/// mean: takes the null out of every choice, and the choice away where one way is left.
+fn without_null(schema: &mut Schema) {
+    if let Some(Value::Array(types)) = schema.get_mut("type") {
+        types.retain(|t| t != "null");
+        if let [only] = types.as_slice() {
+            let only = only.clone();
+            schema.insert("type".to_owned(), only);
+        }
+    }
+    if let Some(Value::Array(ways)) = schema.get_mut("anyOf") {
+        ways.retain(|way| way.get("type").is_none_or(|t| t != "null"));
+        if let [Value::Object(only)] = ways.as_slice() {
+            let only = only.clone();
+            schema.remove("anyOf");
+            for (key, value) in only {
+                // The field's own description says more than its type's.
+                if schema.get(&key).is_none() {
+                    schema.insert(key, value);
+                }
+            }
+        }
+    }
+    transform_subschemas(&mut without_null, schema);
 }
 
 /// An exact number: text that is read exactly, or a bare literal.
@@ -27,7 +56,7 @@ impl JsonSchema for Number {
             "description": "An exact number: [+-]digits[.digits][e[+-]digits] or integer/integer with a positive denominator, as a string or bare. A bare 0.1 is 1/10.",
             "anyOf": [
                 { "type": "number" },
-                { "type": "string", "pattern": "^[+-]?[0-9]+((\\.[0-9]+)?(e[+-]?[0-9]+)?|/[+]?0*[1-9][0-9]*)$" }
+                { "type": "string", "pattern": "^[+-]?[0-9]+((\\.[0-9]+)?([eE][+-]?[0-9]+)?|/\\+?0*[1-9][0-9]*)$" }
             ]
         })
     }

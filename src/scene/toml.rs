@@ -20,6 +20,10 @@ pub(super) fn read(sources: &Sources, index: usize) -> Result<Node, Vec<Diagnost
             .take(MAX_SYNTAX_ERRORS)
             .map(|e| syntax_error(sources, index, e))
             .collect();
+        // Behind a header that could not be read, keys land in the wrong table: an echo too.
+        if diagnostics.iter().any(|d| d.code() != "duplicate-key") {
+            diagnostics.retain(|d| d.code() != "duplicate-key");
+        }
         diagnostics.sort_by_key(|d| d.span().start);
         diagnostics.dedup_by(|a, b| a.span().start == b.span().start);
         return Err(diagnostics);
