@@ -5,6 +5,7 @@
 
 use super::num::{Num, Numbers, Orientation};
 use crate::contact::{Contact, ContactKind};
+use crate::motion::trajectory::Sliding;
 use crate::motion::{self, OutcomeKind, RootContact, Trajectory};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
@@ -447,11 +448,11 @@ fn tan_half(o: Orientation) -> TanHalf {
     }
 }
 
-fn on_stop(sliding: &motion::Sliding) -> bool {
+fn on_stop(sliding: &Sliding) -> bool {
     matches!(sliding.contact, Contact::Limit(_))
 }
 
-fn curve(sliding: &motion::Sliding) -> CurveDocument {
+fn curve(sliding: &Sliding) -> CurveDocument {
     let text = |c: &[Int; 3]| [c[0].to_string(), c[1].to_string(), c[2].to_string()];
     if on_stop(sliding) && !sliding.p[1].is_zero() {
         // u − u₀ whatever integers it was scaled to.
