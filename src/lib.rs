@@ -47,5 +47,6 @@ pub mod contact;
 pub mod geometry;
 pub mod motion;
 pub mod number;
+pub mod report;
 pub mod scene;
 pub mod slice;
