@@ -10,6 +10,7 @@
 //! the edges of two faces that are merged; edges of one colour meet in common vertices only, which they
 //! name, so only pairs of different colours are tested.
 
+use super::approx::Approx;
 use super::hash::FastMap;
 use super::index::{Bounds, EMPTY, Tree, hull};
 use super::kernel::{CurveId, Kernel, NumId};
@@ -131,6 +132,8 @@ pub(super) struct Germ {
     pub(super) dir: Dir,
     /// The edge that leaves forward here, once it was traced.
     pub(super) edge: u32,
+    /// Whether the sector that follows counter-clockwise was found to lie in the face.
+    open: bool,
 }
 
 /// An edge of the face.
@@ -167,10 +170,13 @@ struct Piece {
 pub(crate) struct OnArc(pub(crate) u32);
 
 /// Where a ray down ends.
-#[derive(Clone, Copy)]
-struct Below {
-    item: u32,
-    c: CurveId,
+struct Ray {
+    /// The item hit, and a curve through the point.
+    below: Option<(u32, CurveId)>,
+    /// An item through the ray's own begin that does not begin there itself.
+    through: Option<u32>,
+    /// An item that begins there.
+    beside: Option<u32>,
 }
 
 /// One walk: its items, what was found about them so far, and the boundary traced.
@@ -627,7 +633,7 @@ impl<'a> Tracer<'a> {
         v
     }
 
-    /// The germs of a vertex all of whose arcs are known, counter-clockwise from straight down, as a range
+    /// The germs of a boundary vertex all of whose arcs are known, counter-clockwise from straight down, as a range
     /// of `germs`.
     pub(super) fn germs_of(&mut self, v: u32) -> (usize, usize) {
         let vertex = self.vertices[v as usize];
@@ -640,6 +646,7 @@ impl<'a> Tracer<'a> {
         while at != NONE {
             let Link { item, place, next } = self.links[at as usize];
             at = next;
+            self.touched[self.items[item as usize].comp as usize] = true;
             match self.items[item as usize].carrier {
                 Carrier::Graph(c) => {
                     if place != Place::High {
@@ -669,7 +676,7 @@ impl<'a> Tracer<'a> {
             }
         }
         let from = self.germs.len();
-        let mut push = |item, dir| self.germs.push(Germ { item, dir, edge: NONE });
+        let mut push = |item, dir| self.germs.push(Germ { item, dir, edge: NONE, open: false });
         if down != NONE {
             push(down, Dir::Down);
         }
@@ -768,8 +775,6 @@ impl<'a> Tracer<'a> {
         let (mut leftmost, mut hole, mut count) = (NONE, false, 0);
         loop {
             let Germ { item, dir, .. } = self.germs[g];
-            let comp = self.items[item as usize].comp as usize;
-            self.touched[comp] = true;
             let w = self.next_stop(item, v, dir.forward());
             // The item may not know yet who passes through w; its stops do now.
             let back = self.germ_along(w, item, dir.reverse());
@@ -787,6 +792,7 @@ impl<'a> Tracer<'a> {
             count += 1;
             let (from, to) = self.germs_of(w);
             let turn = if back == from { to - 1 } else { back - 1 };
+            self.germs[turn].open = true;
             if self.germs[back].dir.forward() && self.germs[turn].dir.forward() {
                 // Both edges of the corner lie to the right: perhaps the leftmost one.
                 let order = if leftmost == NONE {
@@ -831,101 +837,133 @@ impl<'a> Tracer<'a> {
     /// to component, each of which begins further left.
     pub(crate) fn outline(&mut self, start: Point) -> Result<(), OnArc> {
         let mut from = start;
-        let mut first = true;
         loop {
-            let Some(below) = self.below(from, first)? else {
+            let ray = self.ray_down(from);
+            if let Some(on) = ray.through.or(ray.beside)
+                && self.cycles.is_empty()
+            {
+                return Err(OnArc(self.items[on as usize].arc));
+            }
+            let Some((item, _)) = ray.below else {
                 self.unbounded = true;
                 return Ok(());
             };
-            self.trace_above(below, from.x);
+            let (v, g) = self.germ_below(item, from.x, true).expect("every germ is made when asked for");
+            self.trace(v, g);
             let cycle = self.cycles[self.cycles.len() - 1];
             if !cycle.hole {
                 return Ok(());
             }
             from = self.vertices[cycle.leftmost as usize].at;
-            first = false;
         }
     }
 
-    /// The item next below a point.
-    fn below(&mut self, p: Point, report: bool) -> Result<Option<Below>, OnArc> {
+    /// Whether the begin of an untouched component lies in the face, all components that begin before
+    /// it having been settled.
+    pub(super) fn opens_into_face(&mut self, p: Point) -> bool {
+        let ray = self.ray_down(p);
+        if ray.through.is_some() {
+            // It hangs on a component that began earlier and is not in the face.
+            return false;
+        }
+        let Some((item, _)) = ray.below else { return self.unbounded };
+        self.touched[self.items[item as usize].comp as usize]
+            && self.germ_below(item, p.x, false).is_some_and(|(_, g)| self.germs[g].open)
+    }
+
+    /// What lies next below a point.
+    fn ray_down(&mut self, p: Point) -> Ray {
         let trees = std::mem::take(&mut self.trees);
         let (a, b) = self.k.enclosure(p.x);
         let height = self.k.height(p.c, p.x);
         let ceiling = if height.hi().is_nan() { f64::INFINITY } else { height.hi() };
         let floor = std::cell::Cell::new(f64::NEG_INFINITY);
-        let mut best: Option<Below> = None;
-        let mut on = None;
+        let mut best: Option<(u32, CurveId, Approx)> = None;
+        let (mut through, mut beside) = (None, None);
         for tree in &trees {
             tree.descend(
                 |n| n[0] <= b && a <= n[1] && n[2] <= ceiling && n[3] >= floor.get(),
                 |i| {
                     let item = self.items[i as usize];
-                    if self.place(&item, p.x).is_none() {
-                        return;
-                    }
-                    let (c, d) = match item.carrier {
+                    let Some(place) = self.place(&item, p.x) else { return };
+                    let (low, high) = match item.carrier {
                         Carrier::Graph(c) => (c, c),
                         Carrier::Vertical(lo, hi) => (lo, hi),
                     };
-                    if !self.k.cmp_at(d, p.c, p.x).is_lt() {
-                        if !self.k.cmp_at(c, p.c, p.x).is_gt() {
-                            on = Some(OnArc(item.arc));
+                    let at = self.k.height(high, p.x);
+                    let order = match (at - height).sign() {
+                        Some(s) if s != 0 => s.cmp(&0),
+                        _ => self.k.cmp_at(high, p.c, p.x),
+                    };
+                    if order.is_lt() {
+                        let higher = match best {
+                            None => true,
+                            Some((_, o, t)) => match (at - t).sign() {
+                                Some(s) if s != 0 => s > 0,
+                                _ => self.k.cmp_at(high, o, p.x).is_gt(),
+                            },
+                        };
+                        if higher {
+                            best = Some((i, high, at));
+                            floor.set(if at.lo().is_nan() { f64::NEG_INFINITY } else { at.lo() });
                         }
                         return;
                     }
-                    if best.is_none_or(|o| self.k.cmp_at(d, o.c, p.x).is_gt()) {
-                        best = Some(Below { item: i, c: d });
-                        let lo = self.k.height(d, p.x).lo();
-                        floor.set(if lo.is_nan() { f64::NEG_INFINITY } else { lo });
+                    let (begins, on) = match item.carrier {
+                        Carrier::Graph(_) => (place == Place::Low, order.is_eq()),
+                        Carrier::Vertical(..) => {
+                            let o = self.k.cmp_at(low, p.c, p.x);
+                            (o.is_eq(), o.is_le())
+                        }
+                    };
+                    if on {
+                        *(if begins { &mut beside } else { &mut through }) = Some(i);
                     }
                 },
             );
         }
         self.trees = trees;
-        match on {
-            Some(arc) if report => Err(arc),
-            _ => Ok(best),
-        }
+        Ray { below: best.map(|(i, c, _)| (i, c)), through, beside }
     }
 
-    /// Traces the boundary whose face lies just above an item's point over x.
-    fn trace_above(&mut self, below: Below, x: NumId) {
-        let item = self.items[below.item as usize];
-        let piece = match item.carrier {
-            Carrier::Graph(_) => self.piece_at(below.item, x),
-            Carrier::Vertical(..) => self.first_piece[below.item as usize],
-        };
-        let (from, to) = self.stops_on(below.item, piece);
-        let mut at = from;
+    /// The germ whose following sector holds the points just above an item's point over x: its vertex and
+    /// place. Without `visit`, None where that vertex was not visited yet.
+    fn germ_below(&mut self, below: u32, x: NumId, visit: bool) -> Option<(u32, usize)> {
+        let item = self.items[below as usize];
         let mut hit = NONE;
+        let mut left = NONE;
         match item.carrier {
-            Carrier::Vertical(..) => hit = self.stops[to - 1],
+            Carrier::Vertical(..) => {
+                let (_, to) = self.stops_on(below, self.first_piece[below as usize]);
+                hit = self.find(self.stops[to - 1]);
+            }
             Carrier::Graph(_) => {
-                while at < to {
+                let piece = self.piece_at(below, x);
+                let (mut at, to) = self.stops_on(below, piece);
+                while at < to && hit == NONE {
                     let y = self.find(self.stops[at]);
                     match self.k.cmp(self.vertices[y as usize].at.x, x) {
                         Ordering::Less => at += 1,
-                        Ordering::Equal => {
-                            hit = y;
-                            break;
-                        }
+                        Ordering::Equal => hit = y,
                         Ordering::Greater => break,
                     }
                 }
+                if hit == NONE {
+                    left = self.stop_from(below, piece, at, false);
+                    left = self.find(left);
+                }
             }
         }
-        if hit != NONE {
-            let v = self.find(hit);
-            let (from, to) = self.germs_of(v);
-            // The last germ before straight up.
-            let g = (from..to).rev().find(|&g| matches!(self.germs[g].dir, Dir::Right | Dir::Down)).unwrap_or(to - 1);
-            self.trace(v, g);
-            return;
+        let v = if hit == NONE { left } else { hit };
+        if !visit && self.vertices[v as usize].germs == NONE {
+            return None;
         }
-        let v = self.stop_from(below.item, piece, at, false);
-        let v = self.find(v);
-        let g = self.germ_along(v, below.item, Dir::Right);
-        self.trace(v, g);
+        if hit == NONE {
+            return Some((v, self.germ_along(v, below, Dir::Right)));
+        }
+        let (from, to) = self.germs_of(v);
+        // The last germ before straight up.
+        let g = (from..to).rev().find(|&g| matches!(self.germs[g].dir, Dir::Right | Dir::Down)).unwrap_or(to - 1);
+        Some((v, g))
     }
 }
