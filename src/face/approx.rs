@@ -37,7 +37,10 @@ impl Approx {
             return Approx::exact(lo);
         }
         let v = lo + (hi - lo) * 0.5;
-        Approx { v, e: (hi - v).max(v - lo) * SLACK + TINY }
+        Approx {
+            v,
+            e: (hi - v).max(v - lo) * SLACK + TINY,
+        }
     }
     /// From an outward-rounded interval.
     #[inline]
@@ -60,17 +63,28 @@ impl Approx {
     /// Lower end, rounded down.
     #[inline]
     pub(crate) fn lo(self) -> f64 {
-        if self.e == 0.0 { self.v } else { (self.v - self.e).next_down() }
+        if self.e == 0.0 {
+            self.v
+        } else {
+            (self.v - self.e).next_down()
+        }
     }
     /// Upper end, rounded up.
     #[inline]
     pub(crate) fn hi(self) -> f64 {
-        if self.e == 0.0 { self.v } else { (self.v + self.e).next_up() }
+        if self.e == 0.0 {
+            self.v
+        } else {
+            (self.v + self.e).next_up()
+        }
     }
     /// Half of it; exact but for underflow.
     #[inline]
     pub(crate) fn half(self) -> Approx {
-        Approx { v: self.v * 0.5, e: self.e * 0.5 + if self.v == 0.0 { 0.0 } else { TINY } }
+        Approx {
+            v: self.v * 0.5,
+            e: self.e * 0.5 + if self.v == 0.0 { 0.0 } else { TINY },
+        }
     }
     /// Quotient; nothing is known where the divisor may be zero.
     #[inline]
@@ -79,9 +93,15 @@ impl Approx {
         // Not a number fails this test too.
         if room > 0.0 {
             let v = self.v / d.v;
-            Approx { v, e: ((self.e + v.abs() * d.e) / room + v.abs() * U) * SLACK + TINY }
+            Approx {
+                v,
+                e: ((self.e + v.abs() * d.e) / room + v.abs() * U) * SLACK + TINY,
+            }
         } else {
-            Approx { v: 0.0, e: f64::INFINITY }
+            Approx {
+                v: 0.0,
+                e: f64::INFINITY,
+            }
         }
     }
     /// Square root of a number known to be positive; nothing is known otherwise.
@@ -90,9 +110,15 @@ impl Approx {
         if self.v > self.e {
             let s = self.v.sqrt();
             // |√(v+d) − √v| ≤ |d|/√v
-            Approx { v: s, e: (self.e / s + s * U) * SLACK + TINY }
+            Approx {
+                v: s,
+                e: (self.e / s + s * U) * SLACK + TINY,
+            }
         } else {
-            Approx { v: 0.0, e: f64::INFINITY }
+            Approx {
+                v: 0.0,
+                e: f64::INFINITY,
+            }
         }
     }
 }
@@ -102,7 +128,10 @@ impl Add for Approx {
     #[inline]
     fn add(self, o: Approx) -> Approx {
         let v = self.v + o.v;
-        Approx { v, e: (self.e + o.e + v.abs() * U) * SLACK }
+        Approx {
+            v,
+            e: (self.e + o.e + v.abs() * U) * SLACK,
+        }
     }
 }
 impl Sub for Approx {
@@ -110,7 +139,10 @@ impl Sub for Approx {
     #[inline]
     fn sub(self, o: Approx) -> Approx {
         let v = self.v - o.v;
-        Approx { v, e: (self.e + o.e + v.abs() * U) * SLACK }
+        Approx {
+            v,
+            e: (self.e + o.e + v.abs() * U) * SLACK,
+        }
     }
 }
 impl Mul for Approx {
@@ -118,14 +150,20 @@ impl Mul for Approx {
     #[inline]
     fn mul(self, o: Approx) -> Approx {
         let v = self.v * o.v;
-        Approx { v, e: (self.v.abs() * o.e + (o.v.abs() + o.e) * self.e + v.abs() * U) * SLACK + TINY }
+        Approx {
+            v,
+            e: (self.v.abs() * o.e + (o.v.abs() + o.e) * self.e + v.abs() * U) * SLACK + TINY,
+        }
     }
 }
 impl Neg for Approx {
     type Output = Approx;
     #[inline]
     fn neg(self) -> Approx {
-        Approx { v: -self.v, e: self.e }
+        Approx {
+            v: -self.v,
+            e: self.e,
+        }
     }
 }
 
@@ -133,7 +171,9 @@ impl Neg for Approx {
 #[inline]
 pub(crate) fn horner(c: &[Approx], x: Approx) -> Approx {
     let mut terms = c.iter().rev();
-    let Some(&first) = terms.next() else { return Approx::exact(0.0) };
+    let Some(&first) = terms.next() else {
+        return Approx::exact(0.0);
+    };
     terms.fold(first, |acc, &k| acc * x + k)
 }
 
@@ -147,7 +187,9 @@ mod tests {
     fn encloses_the_rational_result() {
         let mut seed = 0x9e37_79b9_7f4a_7c15u64;
         let mut next = || {
-            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             seed
         };
         for _ in 0..2000 {
@@ -162,11 +204,17 @@ mod tests {
                 (x, exact) = match (k, b != 0.0) {
                     (0, _) => (x + y, &exact + &other),
                     (1, _) => (x * y, &exact * &other),
-                    (2, true) => (x.over(y + Approx::exact(1.0)), &exact / &(&other + Rat::one())),
+                    (2, true) => (
+                        x.over(y + Approx::exact(1.0)),
+                        &exact / &(&other + Rat::one()),
+                    ),
                     _ => (x - y * x, &exact - &(&other * &exact)),
                 };
                 if x.lo().is_finite() && x.hi().is_finite() {
-                    assert!(Rat::from_f64(x.lo()) <= exact && exact <= Rat::from_f64(x.hi()), "{x:?} {exact}");
+                    assert!(
+                        Rat::from_f64(x.lo()) <= exact && exact <= Rat::from_f64(x.hi()),
+                        "{x:?} {exact}"
+                    );
                 }
             }
         }

@@ -19,11 +19,21 @@ pub(crate) fn meet(a: &Bounds, b: &Bounds) -> bool {
 /// The least box around both.
 #[inline]
 pub(crate) fn hull(a: &Bounds, b: &Bounds) -> Bounds {
-    [a[0].min(b[0]), a[1].max(b[1]), a[2].min(b[2]), a[3].max(b[3])]
+    [
+        a[0].min(b[0]),
+        a[1].max(b[1]),
+        a[2].min(b[2]),
+        a[3].max(b[3]),
+    ]
 }
 
 /// The box that holds nothing.
-pub(crate) const EMPTY: Bounds = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+pub(crate) const EMPTY: Bounds = [
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+];
 
 /// The packed tree.
 #[derive(Default)]
@@ -74,7 +84,11 @@ impl Tree {
 
     /// Walks the tree from the root; only nodes that `wanted` admits are entered. Nodes with larger t come
     /// first, roughly, so that a search for the highest entry below a point prunes early.
-    pub(crate) fn descend(&self, mut wanted: impl FnMut(&Bounds) -> bool, mut found: impl FnMut(u32)) {
+    pub(crate) fn descend(
+        &self,
+        mut wanted: impl FnMut(&Bounds) -> bool,
+        mut found: impl FnMut(u32),
+    ) {
         if self.ids.is_empty() {
             return;
         }
@@ -108,7 +122,9 @@ mod tests {
     fn finds_what_a_scan_finds() {
         let mut seed = 12345u64;
         let mut next = || {
-            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            seed = seed
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             (seed >> 33) as f64 / 2f64.powi(31)
         };
         for n in [0usize, 1, 7, 8, 9, 64, 65, 1000] {
@@ -125,7 +141,11 @@ mod tests {
                 let mut got = Vec::new();
                 tree.query(&b, |i| got.push(i));
                 got.sort_unstable();
-                let want: Vec<u32> = entries.iter().filter(|(e, _)| meet(e, &b)).map(|e| e.1).collect();
+                let want: Vec<u32> = entries
+                    .iter()
+                    .filter(|(e, _)| meet(e, &b))
+                    .map(|e| e.1)
+                    .collect();
                 assert_eq!(got, want);
             }
         }

@@ -106,7 +106,8 @@ impl Kernel {
             return Ok(self.small_curve(c));
         }
         let (p, q) = reduce(&Poly::new(p.to_vec()), &Poly::new(q.to_vec()));
-        let key: [Int; 6] = std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) });
+        let key: [Int; 6] =
+            std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) });
         if let Some(c) = machine(&key) {
             return Ok(self.small_curve(c));
         }
@@ -116,7 +117,11 @@ impl Kernel {
         let a: [Approx; 6] = std::array::from_fn(|i| Approx::from_interval(key[i].interval()));
         let id = self.curves.len() as CurveId;
         let exact = Coeffs::Big(Box::new(key.clone()));
-        self.curves.push(Curve { p: [a[0], a[1], a[2]], q: [a[3], a[4], a[5]], exact });
+        self.curves.push(Curve {
+            p: [a[0], a[1], a[2]],
+            q: [a[3], a[4], a[5]],
+            exact,
+        });
         self.big_curve_ids.insert(key, id);
         Ok(id)
     }
@@ -126,7 +131,11 @@ impl Kernel {
         let id = *self.curve_ids.entry(c).or_insert(next);
         if id == next {
             let a = c.map(|x| Approx::exact(x as f64));
-            self.curves.push(Curve { p: [a[0], a[1], a[2]], q: [a[3], a[4], a[5]], exact: Coeffs::Small(c) });
+            self.curves.push(Curve {
+                p: [a[0], a[1], a[2]],
+                q: [a[3], a[4], a[5]],
+                exact: Coeffs::Small(c),
+            });
         }
         id
     }
@@ -142,8 +151,11 @@ impl Kernel {
     /// The constant t = v.
     pub(crate) fn constant(&mut self, v: &Rat) -> CurveId {
         let zero = Int::zero;
-        self.curve(&[v.numer().clone(), zero(), zero()], &[v.denom().clone(), zero(), zero()])
-            .expect("a rational has a denominator")
+        self.curve(
+            &[v.numer().clone(), zero(), zero()],
+            &[v.denom().clone(), zero(), zero()],
+        )
+        .expect("a rational has a denominator")
     }
 
     /// An enclosure of t over [a, b], by the convex hull of the rational Bernstein form; the whole
@@ -167,7 +179,11 @@ impl Kernel {
             lo = lo.min(t.lo());
             hi = hi.max(t.hi());
         }
-        if lo <= hi { (lo, hi) } else { (f64::NEG_INFINITY, f64::INFINITY) }
+        if lo <= hi {
+            (lo, hi)
+        } else {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        }
     }
 
     /// t at a number.
@@ -209,7 +225,8 @@ impl Kernel {
             return Err(Defect::NoSuchRoot);
         }
         let key: [Int; 3] = std::array::from_fn(|i| key.coeff(i));
-        let small: [Option<i64>; 3] = std::array::from_fn(|i| key[i].to_i64().filter(|c| c.unsigned_abs() < 1 << 53));
+        let small: [Option<i64>; 3] =
+            std::array::from_fn(|i| key[i].to_i64().filter(|c| c.unsigned_abs() < 1 << 53));
         if let [Some(a), Some(b), Some(c)] = small {
             return self.small_root([a, b, c], k);
         }
@@ -218,7 +235,9 @@ impl Kernel {
         }
         let roots = Poly::new(key.to_vec()).real_roots();
         let double = roots.len() == 1 && !key[2].is_zero() && k == 1;
-        let r = roots.get(if double { 0 } else { k as usize }).ok_or(Defect::NoSuchRoot)?;
+        let r = roots
+            .get(if double { 0 } else { k as usize })
+            .ok_or(Defect::NoSuchRoot)?;
         let id = self.known(r.clone());
         self.big_root_ids.insert((key, k), id);
         Ok(id)
@@ -241,11 +260,23 @@ impl Kernel {
                 (-x[1]).over(x[2] + x[2])
             } else {
                 let v = d as f64;
-                let s = Approx { v, e: v * f64::EPSILON }.sqrt();
+                let s = Approx {
+                    v,
+                    e: v * f64::EPSILON,
+                }
+                .sqrt();
                 // Written so that nothing cancels; s grows the side that x₁ already has.
                 let low_first = m[1] >= 0;
-                let q = if low_first { -(x[1] + s).half() } else { (s - x[1]).half() };
-                if (k == 0) == low_first { q.over(x[2]) } else { x[0].over(q) }
+                let q = if low_first {
+                    -(x[1] + s).half()
+                } else {
+                    (s - x[1]).half()
+                };
+                if (k == 0) == low_first {
+                    q.over(x[2])
+                } else {
+                    x[0].over(q)
+                }
             }
         };
         if let Some(&id) = self.root_ids.get(&(m, k)) {
@@ -276,7 +307,14 @@ impl Kernel {
 
     fn add(&mut self, lo: f64, hi: f64, def: Def) -> NumId {
         let id = self.nums.len() as NumId;
-        self.nums.push(Num { lo, hi, parent: id, def, exact: None, fine: None });
+        self.nums.push(Num {
+            lo,
+            hi,
+            parent: id,
+            def,
+            exact: None,
+            fine: None,
+        });
         id
     }
 
@@ -354,7 +392,9 @@ impl Kernel {
     fn fine(&mut self, x: NumId) -> &Int {
         if self.nums[x as usize].fine.is_none() {
             let (lo, _) = self.exact(x).enclosure(FINE + 1);
-            let cell = (lo.numer().shl(u64::from(FINE))).div_rem_floor(lo.denom()).0;
+            let cell = (lo.numer().shl(u64::from(FINE)))
+                .div_rem_floor(lo.denom())
+                .0;
             self.nums[x as usize].fine = Some(Box::new(cell));
         }
         self.nums[x as usize].fine.as_ref().expect("just made")
@@ -427,9 +467,10 @@ impl Kernel {
 
     /// The same with machine integers, where the curves are small.
     fn diff_small(&self, c: CurveId, d: CurveId) -> Option<([i64; 5], bool)> {
-        let (Coeffs::Small(a), Coeffs::Small(b)) =
-            (&self.curves[c as usize].exact, &self.curves[d as usize].exact)
-        else {
+        let (Coeffs::Small(a), Coeffs::Small(b)) = (
+            &self.curves[c as usize].exact,
+            &self.curves[d as usize].exact,
+        ) else {
             return None;
         };
         let k = if a[5] != 0 || b[5] != 0 {
@@ -506,7 +547,11 @@ impl Kernel {
     fn diff_orientation(&mut self, c: CurveId, d: CurveId, x: NumId, proportional: bool) -> i32 {
         // The last coefficient of every denominator is positive.
         let first = self.denominator_sign(c, x);
-        if proportional { first } else { first * self.denominator_sign(d, x) }
+        if proportional {
+            first
+        } else {
+            first * self.denominator_sign(d, x)
+        }
     }
 
     /// Exact order just right (or left) of a common point of two curves.
@@ -586,7 +631,10 @@ impl Kernel {
         // A margin, so that a root at an end of the range lies well inside.
         let (lo, hi) = range;
         let margin = (hi - lo) * 2f64.powi(-24) + (lo.abs() + hi.abs()) * 2f64.powi(-40);
-        let mut found = Roots { at: [(0.0, 0.0); 4], n: 0 };
+        let mut found = Roots {
+            at: [(0.0, 0.0); 4],
+            n: 0,
+        };
         let settled = isolate(&g[..=n], lo - margin, hi + margin, &mut found);
         if settled && found.n == 0 {
             return;
@@ -618,7 +666,12 @@ impl Kernel {
                     continue;
                 }
                 let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
-                let steep = [h[1], two(h[2]), h[3] * Approx::exact(3.0), h[4] * Approx::exact(4.0)];
+                let steep = [
+                    h[1],
+                    two(h[2]),
+                    h[3] * Approx::exact(3.0),
+                    h[4] * Approx::exact(4.0),
+                ];
                 // Monotone on both: one root.
                 return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
             }
@@ -661,7 +714,10 @@ impl Kernel {
 
 #[inline]
 fn two(x: Approx) -> Approx {
-    Approx { v: x.v * 2.0, e: x.e * 2.0 }
+    Approx {
+        v: x.v * 2.0,
+        e: x.e * 2.0,
+    }
 }
 
 #[inline]
@@ -721,7 +777,9 @@ fn small_key(p: &[Int; 3], q: &[Int; 3]) -> Option<[i64; 6]> {
         return None;
     }
     // The resultant of two quadratics, or of what they degenerate to.
-    let minor = |i: usize, j: usize| i128::from(c[i]) * i128::from(c[3 + j]) - i128::from(c[j]) * i128::from(c[3 + i]);
+    let minor = |i: usize, j: usize| {
+        i128::from(c[i]) * i128::from(c[3 + j]) - i128::from(c[j]) * i128::from(c[3 + i])
+    };
     let res = minor(2, 0) * minor(2, 0) - minor(2, 1) * minor(1, 0);
     let plain = c[1] == 0 && c[2] == 0 && c[0] != 0 || c[4] == 0 && c[5] == 0;
     (plain || res != 0).then_some(c)
@@ -746,9 +804,8 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
         && g.degree() != Some(0)
     {
         // Quotients come up to a factor; the leading coefficients give it back.
-        let ratio = |f: &Poly, r: &Poly| {
-            Some(Rat::new(f.leading()?.clone(), r.leading()? * g.leading()?))
-        };
+        let ratio =
+            |f: &Poly, r: &Poly| Some(Rat::new(f.leading()?.clone(), r.leading()? * g.leading()?));
         if let (Some(s), Some(t)) = (ratio(&p, &a), ratio(&q, &b)) {
             let all = s / t;
             p = a.scale(all.numer());
@@ -756,7 +813,11 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
         }
     }
     let content = p.content().gcd(&q.content());
-    let content = if q.leading().is_some_and(|l| l.sign() < 0) { -content } else { content };
+    let content = if q.leading().is_some_and(|l| l.sign() < 0) {
+        -content
+    } else {
+        content
+    };
     let unscale = |f: &Poly| Poly::new(f.coeffs().iter().map(|c| c.div_exact(&content)).collect());
     (unscale(&p), unscale(&q))
 }
@@ -777,8 +838,13 @@ fn isolate(g: &[Approx], a: f64, b: f64, out: &mut Roots) -> bool {
     if n == 0 {
         return matches!(g[0].sign(), Some(-1 | 1));
     }
-    const BINOMIAL: [[f64; 5]; 5] =
-        [[1.0; 5], [1.0, 1.0, 0.0, 0.0, 0.0], [1.0, 2.0, 1.0, 0.0, 0.0], [1.0, 3.0, 3.0, 1.0, 0.0], [1.0, 4.0, 6.0, 4.0, 1.0]];
+    const BINOMIAL: [[f64; 5]; 5] = [
+        [1.0; 5],
+        [1.0, 1.0, 0.0, 0.0, 0.0],
+        [1.0, 2.0, 1.0, 0.0, 0.0],
+        [1.0, 3.0, 3.0, 1.0, 0.0],
+        [1.0, 4.0, 6.0, 4.0, 1.0],
+    ];
     let mut c = [Approx::default(); 5];
     c[..=n].copy_from_slice(g);
     let (x, w) = (Approx::exact(a), Approx::exact(b) - Approx::exact(a));
@@ -797,7 +863,18 @@ fn isolate(g: &[Approx], a: f64, b: f64, out: &mut Roots) -> bool {
             c[j] = c[j] + c[j - 1];
         }
     }
-    settle(&Whole { g, n, slack: (a.abs() + b.abs()) * 64.0 * f64::EPSILON }, &c, a, b, 0, out)
+    settle(
+        &Whole {
+            g,
+            n,
+            slack: (a.abs() + b.abs()) * 64.0 * f64::EPSILON,
+        },
+        &c,
+        a,
+        b,
+        0,
+        out,
+    )
 }
 
 /// What the halving keeps in mind of the whole.
@@ -816,7 +893,10 @@ fn settle(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     for (i, x) in c[..=n].iter().enumerate() {
         let s = x.sign();
         let start = if i == 0 { 0 } else { none };
-        let (p, m) = (plus.max(minus + 1).max(start), minus.max(plus + 1).max(start));
+        let (p, m) = (
+            plus.max(minus + 1).max(start),
+            minus.max(plus + 1).max(start),
+        );
         (plus, minus) = match s {
             Some(1) => (p, none),
             Some(-1) => (none, m),
@@ -826,7 +906,9 @@ fn settle(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     }
     let most = plus.max(minus);
     let (first, last) = (c[0].sign(), c[n].sign());
-    let (Some(first), Some(last)) = (first, last) else { return deeper(whole, c, a, b, depth, out) };
+    let (Some(first), Some(last)) = (first, last) else {
+        return deeper(whole, c, a, b, depth, out);
+    };
     if most == 0 && first != 0 {
         return true;
     }
@@ -868,7 +950,10 @@ fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     }
     // `right` holds the last value of each round: reading it back gives the right part.
     // The true cut lies within `slack` of `mid`, and no root lies between the two.
-    let near = Approx { v: mid, e: whole.slack };
+    let near = Approx {
+        v: mid,
+        e: whole.slack,
+    };
     if !matches!(horner(g, near).sign(), Some(-1 | 1)) {
         return false;
     }
@@ -892,7 +977,11 @@ fn refine(g: &[Approx], a: f64, b: f64, first: i32) -> Option<(f64, f64)> {
             r = x;
         }
         let step = x - f / d;
-        let next = if step > l && step < r { step } else { l + (r - l) * 0.5 };
+        let next = if step > l && step < r {
+            step
+        } else {
+            l + (r - l) * 0.5
+        };
         let still = (next - x).abs() <= x.abs() * f64::EPSILON;
         x = next;
         if still || !(l < r) {

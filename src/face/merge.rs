@@ -42,8 +42,17 @@ pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, 
         };
         ends.push(Point { x: arc.l, c: low });
         ends.push(Point { x: arc.r, c: high });
-        items.push(Item { vl: v, vr: v + 1, color: 0, comp: i as u32, ..*arc });
-        comps.push(Comp { vertex: v, item: i as u32 });
+        items.push(Item {
+            vl: v,
+            vr: v + 1,
+            color: 0,
+            comp: i as u32,
+            ..*arc
+        });
+        comps.push(Comp {
+            vertex: v,
+            item: i as u32,
+        });
     }
     trace(k, &items, &comps, ends, start)
 }
@@ -56,7 +65,11 @@ fn merge(k: &mut Kernel, red: Face, blue: Face, start: Point) -> Result<Face, On
     if blue.items.is_empty() {
         return Ok(red);
     }
-    let (v, c, n) = (red.points.len() as u32, red.comps.len() as u32, red.items.len() as u32);
+    let (v, c, n) = (
+        red.points.len() as u32,
+        red.comps.len() as u32,
+        red.items.len() as u32,
+    );
     let mut items = red.items;
     items.iter_mut().for_each(|i| i.color = 1);
     items.extend(blue.items.into_iter().map(|i| Item {
@@ -67,13 +80,22 @@ fn merge(k: &mut Kernel, red: Face, blue: Face, start: Point) -> Result<Face, On
         ..i
     }));
     let mut comps = red.comps;
-    comps.extend(blue.comps.into_iter().map(|b| Comp { vertex: b.vertex + v, item: b.item + n }));
+    comps.extend(blue.comps.into_iter().map(|b| Comp {
+        vertex: b.vertex + v,
+        item: b.item + n,
+    }));
     let mut points = red.points;
     points.extend(blue.points);
     trace(k, &items, &comps, points, start)
 }
 
-fn trace(k: &mut Kernel, items: &[Item], comps: &[Comp], points: Vec<Point>, start: Point) -> Result<Face, OnArc> {
+fn trace(
+    k: &mut Kernel,
+    items: &[Item],
+    comps: &[Comp],
+    points: Vec<Point>,
+    start: Point,
+) -> Result<Face, OnArc> {
     let mut t = Tracer::new(k, items, comps, points.into_iter());
     t.outline(start)?;
     t.islands();
@@ -97,13 +119,21 @@ pub(crate) fn divide(
     let mut dealt = arcs.to_vec();
     let mut seed = SEED;
     for i in (1..dealt.len()).rev() {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         dealt.swap(i, ((seed >> 32) as usize) % (i + 1));
     }
     conquer(k, &dealt, start, leaf.max(1), merges)
 }
 
-fn conquer(k: &mut Kernel, arcs: &[Item], start: Point, leaf: usize, merges: &mut u64) -> Result<Face, OnArc> {
+fn conquer(
+    k: &mut Kernel,
+    arcs: &[Item],
+    start: Point,
+    leaf: usize,
+    merges: &mut u64,
+) -> Result<Face, OnArc> {
     if arcs.len() <= leaf {
         return walk(k, arcs, start);
     }
@@ -117,7 +147,10 @@ fn conquer(k: &mut Kernel, arcs: &[Item], start: Point, leaf: usize, merges: &mu
 /// The traced boundary with vertices numbered afresh.
 fn extract(t: &mut Tracer<'_>) -> Face {
     let mut number = vec![NONE; t.vertices.len()];
-    let mut face = Face { unbounded: t.unbounded, ..Face::default() };
+    let mut face = Face {
+        unbounded: t.unbounded,
+        ..Face::default()
+    };
     for e in 0..t.edges.len() {
         let edge = t.edges[e];
         for v in [edge.low, edge.high] {
@@ -127,7 +160,10 @@ fn extract(t: &mut Tracer<'_>) -> Face {
             }
         }
         let item = t.items[edge.item as usize];
-        let (low, high) = (t.vertices[edge.low as usize].at, t.vertices[edge.high as usize].at);
+        let (low, high) = (
+            t.vertices[edge.low as usize].at,
+            t.vertices[edge.high as usize].at,
+        );
         let carrier = match item.carrier {
             Carrier::Graph(c) => Carrier::Graph(c),
             Carrier::Vertical(..) => Carrier::Vertical(low.c, high.c),
@@ -151,9 +187,16 @@ fn extract(t: &mut Tracer<'_>) -> Face {
         let first = t.germs[from..to]
             .iter()
             .rev()
-            .find(|g| matches!(g.dir, Dir::Right | Dir::Up) && g.edge != NONE && t.edges[g.edge as usize].cycle == c as u32)
+            .find(|g| {
+                matches!(g.dir, Dir::Right | Dir::Up)
+                    && g.edge != NONE
+                    && t.edges[g.edge as usize].cycle == c as u32
+            })
             .expect("a cycle begins with an edge to the right or up");
-        face.comps.push(Comp { vertex: number[cycle.leftmost as usize], item: first.edge });
+        face.comps.push(Comp {
+            vertex: number[cycle.leftmost as usize],
+            item: first.edge,
+        });
     }
     face
 }
@@ -169,10 +212,16 @@ fn check(face: &Face, k: &mut Kernel) {
         match item.carrier {
             Carrier::Graph(c) => {
                 assert!(k.cmp(p.x, q.x).is_lt(), "an edge goes to the right");
-                assert!(k.cmp_at(c, p.c, p.x).is_eq() && k.cmp_at(c, q.c, q.x).is_eq(), "an edge holds its ends");
+                assert!(
+                    k.cmp_at(c, p.c, p.x).is_eq() && k.cmp_at(c, q.c, q.x).is_eq(),
+                    "an edge holds its ends"
+                );
             }
             Carrier::Vertical(..) => {
-                assert!(k.cmp(p.x, q.x).is_eq() && k.cmp_at(p.c, q.c, p.x).is_lt(), "a vertical goes up");
+                assert!(
+                    k.cmp(p.x, q.x).is_eq() && k.cmp_at(p.c, q.c, p.x).is_lt(),
+                    "a vertical goes up"
+                );
             }
         }
         assert!(s[0] || s[1], "an edge bounds the face");
@@ -184,6 +233,9 @@ fn check(face: &Face, k: &mut Kernel) {
             }
         }
     }
-    assert_eq!(sides, face.half_edges, "every half-edge is the side of an edge");
+    assert_eq!(
+        sides, face.half_edges,
+        "every half-edge is the side of an edge"
+    );
     assert!(balance.iter().all(|&b| b == 0), "cycles are closed");
 }

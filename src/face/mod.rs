@@ -22,5 +22,5 @@ mod run;
 mod trace;
 
 pub use kernel::Stats;
-pub use read::{ArcFile, ReadError, RootOf, SourceArc};
-pub use run::{Answer, Args, FaceError, Method, Report, face, run_cli};
+pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};
+pub use run::{Answer, Args, FaceError, Method, Question, Report, face, run_cli};

@@ -29,6 +29,17 @@ pub struct SourceArc {
     pub line: usize,
 }
 
+/// A vertical u = const between the heights of two curves there, which files of arcs do not hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Upright {
+    /// Where it stands.
+    pub u: RootOf,
+    /// P and Q of a curve through its lower end.
+    pub low: [[Int; 3]; 2],
+    /// P and Q of a curve through its upper end.
+    pub high: [[Int; 3]; 2],
+}
+
 /// What an arcs file holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArcFile {
@@ -77,7 +88,11 @@ struct Words<'a> {
 impl<'a> Words<'a> {
     fn error(&self, byte: usize, message: impl Into<String>) -> ReadError {
         let column = self.text[..byte.min(self.text.len())].chars().count() + 1;
-        ReadError { line: self.line, column, message: message.into() }
+        ReadError {
+            line: self.line,
+            column,
+            message: message.into(),
+        }
     }
     /// The next word and where it begins.
     fn next(&mut self, what: &str) -> Result<(usize, &'a str), ReadError> {
@@ -85,7 +100,10 @@ impl<'a> Words<'a> {
         let from = self.at + (rest.len() - rest.trim_start().len());
         let word = self.text[from..].split_whitespace().next().unwrap_or("");
         if word.is_empty() {
-            return Err(self.error(self.text.trim_end().len(), format!("the line ends where {what} should stand")));
+            return Err(self.error(
+                self.text.trim_end().len(),
+                format!("the line ends where {what} should stand"),
+            ));
         }
         self.at = from + word.len();
         Ok((from, word))
@@ -101,7 +119,9 @@ impl<'a> Words<'a> {
         }
         // A machine word needs no big-number parser.
         if digits.len() <= 18 {
-            let size = digits.bytes().fold(0i64, |n, b| n * 10 + i64::from(b - b'0'));
+            let size = digits
+                .bytes()
+                .fold(0i64, |n, b| n * 10 + i64::from(b - b'0'));
             return Ok(Int::from(if word.starts_with('-') { -size } else { size }));
         }
         word.strip_prefix('+')
@@ -118,22 +138,38 @@ impl<'a> Words<'a> {
         match word {
             "0" => Ok(RootOf { c, k: 0 }),
             "1" => Ok(RootOf { c, k: 1 }),
-            _ => Err(self.error(at, format!("{}: a quadratic has the roots 0 and 1, not `{}`", what[3], shorten(word)))),
+            _ => Err(self.error(
+                at,
+                format!(
+                    "{}: a quadratic has the roots 0 and 1, not `{}`",
+                    what[3],
+                    shorten(word)
+                ),
+            )),
         }
     }
     fn rational(&mut self, what: &str) -> Result<Rat, ReadError> {
         let (at, word) = self.next(what)?;
-        literal::parse(word).map_err(|e| self.error(at, format!("{what}: `{}`: {e}", shorten(word))))
+        literal::parse(word)
+            .map_err(|e| self.error(at, format!("{what}: `{}`: {e}", shorten(word))))
     }
     fn end(&mut self) -> Result<(), ReadError> {
         let rest = &self.text[self.at..];
         let from = self.at + (rest.len() - rest.trim_start().len());
-        if from < self.text.len() { Err(self.error(from, "more than the line should hold")) } else { Ok(()) }
+        if from < self.text.len() {
+            Err(self.error(from, "more than the line should hold"))
+        } else {
+            Ok(())
+        }
     }
 }
 
 fn shorten(word: &str) -> String {
-    if word.chars().count() <= 24 { word.into() } else { word.chars().take(24).chain(['…']).collect() }
+    if word.chars().count() <= 24 {
+        word.into()
+    } else {
+        word.chars().take(24).chain(['…']).collect()
+    }
 }
 
 impl ArcFile {
@@ -147,15 +183,31 @@ impl ArcFile {
         let mut lines = text
             .split('\n')
             .enumerate()
-            .map(|(i, text)| Words { line: i + 1, text: text.strip_suffix('\r').unwrap_or(text), at: 0 })
+            .map(|(i, text)| Words {
+                line: i + 1,
+                text: text.strip_suffix('\r').unwrap_or(text),
+                at: 0,
+            })
             .filter(|w| !w.text.trim().is_empty());
-        let missing = |message: String| ReadError { line: 0, column: 0, message };
-        let mut head = lines.next().ok_or_else(|| missing("the file is empty".into()))?;
+        let missing = |message: String| ReadError {
+            line: 0,
+            column: 0,
+            message,
+        };
+        let mut head = lines
+            .next()
+            .ok_or_else(|| missing("the file is empty".into()))?;
         let (at, word) = head.next("the number of arcs")?;
-        let count: usize = word
-            .parse()
-            .map_err(|_| head.error(at, format!("the number of arcs: `{}` is none", shorten(word))))?;
-        let start = (head.rational("the start's u")?, head.rational("the start's t")?);
+        let count: usize = word.parse().map_err(|_| {
+            head.error(
+                at,
+                format!("the number of arcs: `{}` is none", shorten(word)),
+            )
+        })?;
+        let start = (
+            head.rational("the start's u")?,
+            head.rational("the start's t")?,
+        );
         head.end()?;
         let mut arcs = Vec::with_capacity(count.min(text.len() / 28));
         for mut w in lines {
@@ -166,10 +218,19 @@ impl ArcFile {
             let q = w.ints(["Q0", "Q1", "Q2"])?;
             let left = w.root(["l0", "l1", "l2", "lk"])?;
             let right = w.root(["r0", "r1", "r2", "rk"])?;
-            arcs.push(SourceArc { p, q, left, right, line: w.line });
+            arcs.push(SourceArc {
+                p,
+                q,
+                left,
+                right,
+                line: w.line,
+            });
         }
         if arcs.len() < count {
-            return Err(missing(format!("{count} arcs announced, {} found", arcs.len())));
+            return Err(missing(format!(
+                "{count} arcs announced, {} found",
+                arcs.len()
+            )));
         }
         Ok(ArcFile { start, arcs })
     }
@@ -179,27 +240,50 @@ impl ArcFile {
     /// # Errors
     /// Where the file cannot be read, is no text, or see [`ArcFile::parse`].
     pub fn open(path: &Path) -> Result<ArcFile, ReadError> {
-        let failed = |e: std::io::Error| ReadError { line: 0, column: 0, message: e.to_string() };
+        let failed = |e: std::io::Error| ReadError {
+            line: 0,
+            column: 0,
+            message: e.to_string(),
+        };
         let mut bytes = Vec::new();
         if path.as_os_str() == "-" {
-            std::io::stdin().lock().take(MAX_TEXT).read_to_end(&mut bytes).map_err(failed)?;
+            std::io::stdin()
+                .lock()
+                .take(MAX_TEXT)
+                .read_to_end(&mut bytes)
+                .map_err(failed)?;
         } else {
-            std::fs::File::open(path).map_err(failed)?.take(MAX_TEXT).read_to_end(&mut bytes).map_err(failed)?;
+            std::fs::File::open(path)
+                .map_err(failed)?
+                .take(MAX_TEXT)
+                .read_to_end(&mut bytes)
+                .map_err(failed)?;
         }
         if bytes.starts_with(&[0x1f, 0x8b]) {
             let mut text = Vec::new();
-            flate2::read::MultiGzDecoder::new(&bytes[..]).take(MAX_TEXT).read_to_end(&mut text).map_err(failed)?;
+            flate2::read::MultiGzDecoder::new(&bytes[..])
+                .take(MAX_TEXT)
+                .read_to_end(&mut text)
+                .map_err(failed)?;
             bytes = text;
         }
         if bytes.len() as u64 >= MAX_TEXT {
-            return Err(ReadError { line: 0, column: 0, message: format!("more than {MAX_TEXT} bytes of text") });
+            return Err(ReadError {
+                line: 0,
+                column: 0,
+                message: format!("more than {MAX_TEXT} bytes of text"),
+            });
         }
         let text = std::str::from_utf8(&bytes).map_err(|e| {
             let before = &bytes[..e.valid_up_to()];
             let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
             let tail = before.rsplit(|&b| b == b'\n').next().unwrap_or(before);
             let column = String::from_utf8_lossy(tail).chars().count() + 1;
-            ReadError { line, column, message: "not UTF-8 text".into() }
+            ReadError {
+                line,
+                column,
+                message: "not UTF-8 text".into(),
+            }
         })?;
         ArcFile::parse(text)
     }

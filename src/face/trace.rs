@@ -213,7 +213,13 @@ impl<'a> Tracer<'a> {
         comps: &'a [Comp],
         ends: impl Iterator<Item = Point>,
     ) -> Tracer<'a> {
-        let free = |at| Vertex { at, parent: NONE, links: NONE, germs: NONE, germ_count: 0 };
+        let free = |at| Vertex {
+            at,
+            parent: NONE,
+            links: NONE,
+            germs: NONE,
+            germ_count: 0,
+        };
         let mut t = Tracer {
             k,
             items,
@@ -250,8 +256,11 @@ impl<'a> Tracer<'a> {
         let spans: Vec<Bounds> = self.items.iter().map(|i| self.box_of(i)).collect();
         // Long compared with what lies between the outer tenths of all arcs.
         let extent = |axis: usize| {
-            let mut ends: Vec<f64> =
-                spans.iter().flat_map(|b| [b[axis], b[axis + 1]]).filter(|x| x.is_finite()).collect();
+            let mut ends: Vec<f64> = spans
+                .iter()
+                .flat_map(|b| [b[axis], b[axis + 1]])
+                .filter(|x| x.is_finite())
+                .collect();
             let n = ends.len();
             if n < 2 {
                 return (0.0, 0.0, 1.0);
@@ -263,11 +272,16 @@ impl<'a> Tracer<'a> {
         };
         let (u, t) = (extent(0), extent(2));
         let length = |b: &Bounds| {
-            let part = |lo: f64, hi: f64, e: (f64, f64, f64)| (hi.min(e.1) - lo.max(e.0)).max(0.0) * e.2;
+            let part =
+                |lo: f64, hi: f64, e: (f64, f64, f64)| (hi.min(e.1) - lo.max(e.0)).max(0.0) * e.2;
             part(b[0], b[1], u) + part(b[2], b[3], t)
         };
         let total: f64 = spans.iter().map(length).sum();
-        let per = if total > 0.0 { 3.0 * spans.len() as f64 / total } else { 0.0 };
+        let per = if total > 0.0 {
+            3.0 * spans.len() as f64 / total
+        } else {
+            0.0
+        };
         let mut entries = [Vec::new(), Vec::new()];
         for (i, item) in self.items.iter().enumerate() {
             self.first_piece.push(self.pieces.len() as u32);
@@ -278,7 +292,11 @@ impl<'a> Tracer<'a> {
             };
             let mut from = b[0];
             for p in 1..=n {
-                let to = if p == n { b[1] } else { b[0] + (b[1] - b[0]) * (p as f64 / n as f64) };
+                let to = if p == n {
+                    b[1]
+                } else {
+                    b[0] + (b[1] - b[0]) * (p as f64 / n as f64)
+                };
                 let to = to.max(from).min(b[1]);
                 let bounds = match item.carrier {
                     Carrier::Graph(c) if n > 1 => {
@@ -288,7 +306,13 @@ impl<'a> Tracer<'a> {
                     _ => *b,
                 };
                 entries[usize::from(item.color == 2)].push((bounds, i as u32));
-                self.pieces.push(Piece { from, to, bounds, stops: NONE, stop_count: 0 });
+                self.pieces.push(Piece {
+                    from,
+                    to,
+                    bounds,
+                    stops: NONE,
+                    stop_count: 0,
+                });
                 from = to;
             }
         }
@@ -306,15 +330,24 @@ impl<'a> Tracer<'a> {
             Carrier::Vertical(lo, hi) => {
                 let (lo, hi) = (self.k.height(lo, item.l), self.k.height(hi, item.l));
                 let ends = [lo.lo().min(hi.lo()), lo.hi().max(hi.hi())];
-                if ends[0] <= ends[1] { [a, b, ends[0], ends[1]] } else { [a, b, f64::NEG_INFINITY, f64::INFINITY] }
+                if ends[0] <= ends[1] {
+                    [a, b, ends[0], ends[1]]
+                } else {
+                    [a, b, f64::NEG_INFINITY, f64::INFINITY]
+                }
             }
         }
     }
 
     /// The box of a whole item.
     pub(super) fn bounds(&self, item: u32) -> Bounds {
-        let (a, b) = (self.first_piece[item as usize], self.first_piece[item as usize + 1]);
-        self.pieces[a as usize..b as usize].iter().fold(EMPTY, |acc, p| hull(&acc, &p.bounds))
+        let (a, b) = (
+            self.first_piece[item as usize],
+            self.first_piece[item as usize + 1],
+        );
+        self.pieces[a as usize..b as usize]
+            .iter()
+            .fold(EMPTY, |acc, p| hull(&acc, &p.bounds))
     }
 
     // ----- vertices -----
@@ -332,7 +365,10 @@ impl<'a> Tracer<'a> {
             return v;
         }
         let (a, b) = (&self.vertices[v as usize], &self.vertices[w as usize]);
-        debug_assert!(a.germs == NONE || b.germs == NONE, "two visited vertices are one point");
+        debug_assert!(
+            a.germs == NONE || b.germs == NONE,
+            "two visited vertices are one point"
+        );
         // The one visited already knows all of its arcs.
         let (keep, drop) = if b.germs != NONE { (w, v) } else { (v, w) };
         self.vertices[drop as usize].parent = keep;
@@ -361,7 +397,11 @@ impl<'a> Tracer<'a> {
             at = link.next;
         }
         self.vertices[v as usize].links = self.links.len() as u32;
-        self.links.push(Link { item, place, next: head });
+        self.links.push(Link {
+            item,
+            place,
+            next: head,
+        });
     }
 
     /// Lexicographic order of two points.
@@ -395,7 +435,12 @@ impl<'a> Tracer<'a> {
     }
 
     fn push_cross(&mut self, x: NumId, c: CurveId, places: [Place; 2]) {
-        self.crosses.push(Cross { x, c, places, vertex: NONE });
+        self.crosses.push(Cross {
+            x,
+            c,
+            places,
+            vertex: NONE,
+        });
     }
 
     /// Where a number lies in an item's range; None outside.
@@ -481,9 +526,15 @@ impl<'a> Tracer<'a> {
 
     /// A graph and a vertical.
     fn pierce(&mut self, graph: &Item, c: CurveId, vertical: &Item, vertical_first: bool) {
-        let Carrier::Vertical(lo, hi) = vertical.carrier else { return };
-        let Some(p) = self.place(graph, vertical.l) else { return };
-        let Some(q) = self.place_between(lo, hi, c, vertical.l) else { return };
+        let Carrier::Vertical(lo, hi) = vertical.carrier else {
+            return;
+        };
+        let Some(p) = self.place(graph, vertical.l) else {
+            return;
+        };
+        let Some(q) = self.place_between(lo, hi, c, vertical.l) else {
+            return;
+        };
         let places = if vertical_first { [q, p] } else { [p, q] };
         self.push_cross(vertical.l, c, places);
     }
@@ -507,7 +558,9 @@ impl<'a> Tracer<'a> {
         if !self.k.cmp(i.l, j.l).is_eq() {
             return;
         }
-        let (Carrier::Vertical(a, b), Carrier::Vertical(c, d)) = (i.carrier, j.carrier) else { return };
+        let (Carrier::Vertical(a, b), Carrier::Vertical(c, d)) = (i.carrier, j.carrier) else {
+            return;
+        };
         for (e, p) in [(a, Place::Low), (b, Place::High)] {
             if let Some(q) = self.place_between(c, d, e, i.l) {
                 self.push_cross(i.l, e, [p, q]);
@@ -541,10 +594,22 @@ impl<'a> Tracer<'a> {
             Carrier::Vertical(a, b) => (a, b),
         };
         if first {
-            hits.push(Hit { x: me.l, c: low, other: item, there: Place::Low, cross: NONE });
+            hits.push(Hit {
+                x: me.l,
+                c: low,
+                other: item,
+                there: Place::Low,
+                cross: NONE,
+            });
         }
         if last {
-            hits.push(Hit { x: me.r, c: high, other: item, there: Place::High, cross: NONE });
+            hits.push(Hit {
+                x: me.r,
+                c: high,
+                other: item,
+                there: Place::High,
+                cross: NONE,
+            });
         }
         self.serial += 1;
         self.stamp[item as usize] = self.serial;
@@ -563,13 +628,25 @@ impl<'a> Tracer<'a> {
                 let inside = (first || self.k.cmp_double(z.x, from).is_ge())
                     && (last || self.k.cmp_double(z.x, to).is_lt());
                 if inside {
-                    hits.push(Hit { x: z.x, c: z.c, other: b, there: z.places[usize::from(item < b)], cross });
+                    hits.push(Hit {
+                        x: z.x,
+                        c: z.c,
+                        other: b,
+                        there: z.places[usize::from(item < b)],
+                        cross,
+                    });
                 }
             }
         }
         let k = &mut *self.k;
         let vertical = matches!(me.carrier, Carrier::Vertical(..));
-        let mut order = |a: &Hit, b: &Hit| if vertical { k.cmp_at(a.c, b.c, a.x) } else { k.cmp(a.x, b.x) };
+        let mut order = |a: &Hit, b: &Hit| {
+            if vertical {
+                k.cmp_at(a.c, b.c, a.x)
+            } else {
+                k.cmp(a.x, b.x)
+            }
+        };
         hits.sort_by(&mut order);
         let start = self.stops.len();
         let mut at = 0;
@@ -611,17 +688,34 @@ impl<'a> Tracer<'a> {
                 Place::High => other.vr,
                 Place::Inside => NONE,
             };
-            let bound = if h.cross == NONE { NONE } else { self.crosses[h.cross as usize].vertex };
+            let bound = if h.cross == NONE {
+                NONE
+            } else {
+                self.crosses[h.cross as usize].vertex
+            };
             for w in [end, bound] {
                 if w != NONE {
-                    v = if v == NONE { self.find(w) } else { self.unite(v, w) };
+                    v = if v == NONE {
+                        self.find(w)
+                    } else {
+                        self.unite(v, w)
+                    };
                 }
             }
         }
         if v == NONE {
             v = self.vertices.len() as u32;
-            let at = Point { x: hits[0].x, c: hits[0].c };
-            self.vertices.push(Vertex { at, parent: NONE, links: NONE, germs: NONE, germ_count: 0 });
+            let at = Point {
+                x: hits[0].x,
+                c: hits[0].c,
+            };
+            self.vertices.push(Vertex {
+                at,
+                parent: NONE,
+                links: NONE,
+                germs: NONE,
+                germ_count: 0,
+            });
         }
         self.link(v, item, here);
         for h in hits {
@@ -638,9 +732,13 @@ impl<'a> Tracer<'a> {
     pub(super) fn germs_of(&mut self, v: u32) -> (usize, usize) {
         let vertex = self.vertices[v as usize];
         if vertex.germs != NONE {
-            return (vertex.germs as usize, (vertex.germs + vertex.germ_count) as usize);
+            return (
+                vertex.germs as usize,
+                (vertex.germs + vertex.germ_count) as usize,
+            );
         }
-        let (mut rights, mut lefts): (Vec<(CurveId, u32)>, Vec<(CurveId, u32)>) = Default::default();
+        let (mut rights, mut lefts): (Vec<(CurveId, u32)>, Vec<(CurveId, u32)>) =
+            Default::default();
         let (mut up, mut down) = (NONE, NONE);
         let mut at = vertex.links;
         while at != NONE {
@@ -676,7 +774,14 @@ impl<'a> Tracer<'a> {
             }
         }
         let from = self.germs.len();
-        let mut push = |item, dir| self.germs.push(Germ { item, dir, edge: NONE, open: false });
+        let mut push = |item, dir| {
+            self.germs.push(Germ {
+                item,
+                dir,
+                edge: NONE,
+                open: false,
+            })
+        };
         if down != NONE {
             push(down, Dir::Down);
         }
@@ -711,10 +816,17 @@ impl<'a> Tracer<'a> {
 
     /// The piece of an item that holds a number of its range.
     fn piece_at(&mut self, item: u32, x: NumId) -> u32 {
-        let (mut lo, mut hi) = (self.first_piece[item as usize], self.first_piece[item as usize + 1] - 1);
+        let (mut lo, mut hi) = (
+            self.first_piece[item as usize],
+            self.first_piece[item as usize + 1] - 1,
+        );
         while lo < hi {
             let mid = lo.midpoint(hi);
-            if self.k.cmp_double(x, self.pieces[mid as usize].to).is_lt() { hi = mid } else { lo = mid + 1 }
+            if self.k.cmp_double(x, self.pieces[mid as usize].to).is_lt() {
+                hi = mid
+            } else {
+                lo = mid + 1
+            }
         }
         lo
     }
@@ -728,7 +840,10 @@ impl<'a> Tracer<'a> {
             }
             loop {
                 piece += 1;
-                debug_assert!(piece < self.first_piece[item as usize + 1], "an arc ends in a stop");
+                debug_assert!(
+                    piece < self.first_piece[item as usize + 1],
+                    "an arc ends in a stop"
+                );
                 let (from, to) = self.stops_on(item, piece);
                 if from < to {
                     return self.stops[from];
@@ -739,7 +854,10 @@ impl<'a> Tracer<'a> {
             return self.stops[at - 1];
         }
         loop {
-            debug_assert!(piece > self.first_piece[item as usize], "an arc begins in a stop");
+            debug_assert!(
+                piece > self.first_piece[item as usize],
+                "an arc begins in a stop"
+            );
             piece -= 1;
             let (from, to) = self.stops_on(item, piece);
             if from < to {
@@ -751,7 +869,10 @@ impl<'a> Tracer<'a> {
     /// The next vertex along an item from one on it.
     fn next_stop(&mut self, item: u32, v: u32, forward: bool) -> u32 {
         let me = self.items[item as usize];
-        let (first, last) = (self.first_piece[item as usize], self.first_piece[item as usize + 1] - 1);
+        let (first, last) = (
+            self.first_piece[item as usize],
+            self.first_piece[item as usize + 1] - 1,
+        );
         let piece = if self.find(me.vl) == v {
             first
         } else if self.find(me.vr) == v {
@@ -761,7 +882,9 @@ impl<'a> Tracer<'a> {
             self.piece_at(item, x)
         };
         let (from, to) = self.stops_on(item, piece);
-        let at = (from..to).find(|&s| self.find(self.stops[s]) == v).expect("a vertex on an arc is a stop of it");
+        let at = (from..to)
+            .find(|&s| self.find(self.stops[s]) == v)
+            .expect("a vertex on an arc is a stop of it");
         let w = self.stop_from(item, piece, at, forward);
         self.find(w)
     }
@@ -778,15 +901,30 @@ impl<'a> Tracer<'a> {
             let w = self.next_stop(item, v, dir.forward());
             // The item may not know yet who passes through w; its stops do now.
             let back = self.germ_along(w, item, dir.reverse());
-            let (slot, low, high) = if dir.forward() { (g, v, w) } else { (back, w, v) };
+            let (slot, low, high) = if dir.forward() {
+                (g, v, w)
+            } else {
+                (back, w, v)
+            };
             let mut edge = self.germs[slot].edge;
             if edge == NONE {
                 edge = self.edges.len() as u32;
                 self.germs[slot].edge = edge;
-                self.edges.push(Edge { item, low, high, above: false, below: false, cycle });
+                self.edges.push(Edge {
+                    item,
+                    low,
+                    high,
+                    above: false,
+                    below: false,
+                    cycle,
+                });
             }
             let e = &mut self.edges[edge as usize];
-            let side = if dir.forward() { &mut e.above } else { &mut e.below };
+            let side = if dir.forward() {
+                &mut e.above
+            } else {
+                &mut e.below
+            };
             debug_assert!(!*side, "a side of an edge was walked twice");
             *side = true;
             count += 1;
@@ -800,7 +938,10 @@ impl<'a> Tracer<'a> {
                 } else if leftmost == w {
                     Ordering::Equal
                 } else {
-                    self.cmp_points(self.vertices[leftmost as usize].at, self.vertices[w as usize].at)
+                    self.cmp_points(
+                        self.vertices[leftmost as usize].at,
+                        self.vertices[w as usize].at,
+                    )
                 };
                 // A corner that wraps round the first germ looks to the left.
                 let wraps = back == from;
@@ -815,7 +956,11 @@ impl<'a> Tracer<'a> {
                 break;
             }
         }
-        self.cycles.push(Cycle { leftmost, half_edges: count, hole });
+        self.cycles.push(Cycle {
+            leftmost,
+            half_edges: count,
+            hole,
+        });
     }
 
     /// Traces the component that begins at a vertex with nothing to the left of it.
@@ -848,7 +993,9 @@ impl<'a> Tracer<'a> {
                 self.unbounded = true;
                 return Ok(());
             };
-            let (v, g) = self.germ_below(item, from.x, true).expect("every germ is made when asked for");
+            let (v, g) = self
+                .germ_below(item, from.x, true)
+                .expect("every germ is made when asked for");
             self.trace(v, g);
             let cycle = self.cycles[self.cycles.len() - 1];
             if !cycle.hole {
@@ -866,9 +1013,13 @@ impl<'a> Tracer<'a> {
             // It hangs on a component that began earlier and is not in the face.
             return false;
         }
-        let Some((item, _)) = ray.below else { return self.unbounded };
+        let Some((item, _)) = ray.below else {
+            return self.unbounded;
+        };
         self.touched[self.items[item as usize].comp as usize]
-            && self.germ_below(item, p.x, false).is_some_and(|(_, g)| self.germs[g].open)
+            && self
+                .germ_below(item, p.x, false)
+                .is_some_and(|(_, g)| self.germs[g].open)
     }
 
     /// What lies next below a point.
@@ -876,7 +1027,11 @@ impl<'a> Tracer<'a> {
         let trees = std::mem::take(&mut self.trees);
         let (a, b) = self.k.enclosure(p.x);
         let height = self.k.height(p.c, p.x);
-        let ceiling = if height.hi().is_nan() { f64::INFINITY } else { height.hi() };
+        let ceiling = if height.hi().is_nan() {
+            f64::INFINITY
+        } else {
+            height.hi()
+        };
         let floor = std::cell::Cell::new(f64::NEG_INFINITY);
         let mut best: Option<(u32, CurveId, Approx)> = None;
         let (mut through, mut beside) = (None, None);
@@ -885,7 +1040,9 @@ impl<'a> Tracer<'a> {
                 |n| n[0] <= b && a <= n[1] && n[2] <= ceiling && n[3] >= floor.get(),
                 |i| {
                     let item = self.items[i as usize];
-                    let Some(place) = self.place(&item, p.x) else { return };
+                    let Some(place) = self.place(&item, p.x) else {
+                        return;
+                    };
                     let (low, high) = match item.carrier {
                         Carrier::Graph(c) => (c, c),
                         Carrier::Vertical(lo, hi) => (lo, hi),
@@ -905,7 +1062,11 @@ impl<'a> Tracer<'a> {
                         };
                         if higher {
                             best = Some((i, high, at));
-                            floor.set(if at.lo().is_nan() { f64::NEG_INFINITY } else { at.lo() });
+                            floor.set(if at.lo().is_nan() {
+                                f64::NEG_INFINITY
+                            } else {
+                                at.lo()
+                            });
                         }
                         return;
                     }
@@ -923,7 +1084,11 @@ impl<'a> Tracer<'a> {
             );
         }
         self.trees = trees;
-        Ray { below: best.map(|(i, c, _)| (i, c)), through, beside }
+        Ray {
+            below: best.map(|(i, c, _)| (i, c)),
+            through,
+            beside,
+        }
     }
 
     /// The germ whose following sector holds the points just above an item's point over x: its vertex and
@@ -963,7 +1128,10 @@ impl<'a> Tracer<'a> {
         }
         let (from, to) = self.germs_of(v);
         // The last germ before straight up.
-        let g = (from..to).rev().find(|&g| matches!(self.germs[g].dir, Dir::Right | Dir::Down)).unwrap_or(to - 1);
+        let g = (from..to)
+            .rev()
+            .find(|&g| matches!(self.germs[g].dir, Dir::Right | Dir::Down))
+            .unwrap_or(to - 1);
         Some((v, g))
     }
 }
