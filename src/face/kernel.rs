@@ -173,17 +173,12 @@ impl Kernel {
         if !matches!(sign, Some(-1 | 1)) || q.iter().any(|x| x.sign() != sign) {
             return (f64::NEG_INFINITY, f64::INFINITY);
         }
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for i in 0..3 {
-            let t = p[i].over(q[i]);
-            lo = lo.min(t.lo());
-            hi = hi.max(t.hi());
+        let t: [Approx; 3] = std::array::from_fn(|i| p[i].over(q[i]));
+        if !t.iter().all(|t| t.e.is_finite() && t.v.is_finite()) {
+            return (f64::NEG_INFINITY, f64::INFINITY);
         }
-        if lo <= hi {
-            (lo, hi)
-        } else {
-            (f64::NEG_INFINITY, f64::INFINITY)
-        }
+        let lo = t.iter().fold(f64::INFINITY, |lo, t| lo.min(t.lo()));
+        (lo, t.iter().fold(f64::NEG_INFINITY, |hi, t| hi.max(t.hi())))
     }
 
     /// t at a number.

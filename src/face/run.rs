@@ -73,7 +73,7 @@ impl fmt::Display for FaceError {
 impl std::error::Error for FaceError {}
 
 /// Arcs a leaf of the merge tree, found by measurement.
-const LEAF: usize = 48;
+const LEAF: usize = 96;
 
 /// The face of the arcs that holds the start: a [`Question`] with graphs only.
 ///

@@ -621,8 +621,18 @@ impl<'a> Tracer<'a> {
                 near.push(b);
             }
         });
+        // Arcs on the same curve (faces' edges do not overlap at their vertices).
+        let mut twins = Vec::new();
         for &b in &near {
             let (s, e) = self.meet(item, b);
+            let twin = match (me.carrier, self.items[b as usize].carrier) {
+                (Carrier::Graph(c), Carrier::Graph(d)) => c == d,
+                (Carrier::Vertical(..), Carrier::Vertical(..)) => s < e,
+                _ => false,
+            };
+            if twin && me.color == 0 {
+                twins.push(b);
+            }
             for cross in s..e {
                 let z = self.crosses[cross as usize];
                 let inside = (first || self.k.cmp_double(z.x, from).is_ge())
@@ -663,6 +673,9 @@ impl<'a> Tracer<'a> {
                 end += 1;
             }
             let v = self.vertex_of(item, &hits[at..end]);
+            for &b in &twins {
+                self.share(v, b, &hits[at..end]);
+            }
             self.stops.push(v);
             at = end;
         }
@@ -725,6 +738,36 @@ impl<'a> Tracer<'a> {
             }
         }
         v
+    }
+
+    /// Tells a vertex on one item to a twin of it that passes over the same point, and to the pairs that the
+    /// twin makes with the others there: overlapping arcs meet each other at their ends only.
+    fn share(&mut self, v: u32, twin: u32, hits: &[Hit]) {
+        let t = self.items[twin as usize];
+        let place = match t.carrier {
+            Carrier::Graph(_) => self.place(&t, hits[0].x),
+            Carrier::Vertical(lo, hi) => self.place_between(lo, hi, hits[0].c, hits[0].x),
+        };
+        if place != Some(Place::Inside) {
+            return;
+        }
+        self.link(v, twin, Place::Inside);
+        for h in hits {
+            if h.other == twin || h.cross == NONE {
+                continue;
+            }
+            let (s, e) = self.meet(twin, h.other);
+            for cross in s..e {
+                let z = self.crosses[cross as usize];
+                let same = match t.carrier {
+                    Carrier::Graph(_) => self.k.cmp(z.x, h.x).is_eq(),
+                    Carrier::Vertical(..) => self.k.cmp_at(z.c, h.c, h.x).is_eq(),
+                };
+                if same {
+                    self.crosses[cross as usize].vertex = v;
+                }
+            }
+        }
     }
 
     /// The germs of a boundary vertex all of whose arcs are known, counter-clockwise from straight down, as a range
