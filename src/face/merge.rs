@@ -12,6 +12,7 @@
 //! of one half through p bound that half's face there (p lies in its closure), so p is a vertex of R
 //! or of B, or one edge of each passes through it and the walk finds the crossing.
 
+use super::index::EMPTY;
 use super::kernel::Kernel;
 use super::trace::{Carrier, Comp, Dir, Item, NONE, OnArc, Point, Tracer};
 
@@ -177,6 +178,12 @@ fn extract(t: &mut Tracer<'_>) -> Face {
             color: 0,
             comp: edge.cycle,
             arc: item.arc,
+            // Uncut, it keeps its box.
+            bounds: if item.l == low.x && item.r == high.x && carrier == item.carrier {
+                t.bounds(edge.item)
+            } else {
+                EMPTY
+            },
         });
         face.sides.push([edge.above, edge.below]);
     }

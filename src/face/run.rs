@@ -1,5 +1,6 @@
 //! The face of bare arcs as a question with an answer, for the library and for the command line.
 
+use super::index::EMPTY;
 use super::kernel::{Defect, Kernel, Stats};
 use super::merge::{Face, divide, walk};
 use super::read::{ArcFile, ReadError, SourceArc, Upright};
@@ -73,7 +74,7 @@ impl fmt::Display for FaceError {
 impl std::error::Error for FaceError {}
 
 /// Arcs a leaf of the merge tree, found by measurement.
-const LEAF: usize = 96;
+const LEAF: usize = 512;
 
 /// The face of the arcs that holds the start: a [`Question`] with graphs only.
 ///
@@ -193,6 +194,7 @@ fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static
         color: 0,
         comp: 0,
         arc: index as u32,
+        bounds: EMPTY,
     })
 }
 
@@ -216,6 +218,7 @@ fn upright(k: &mut Kernel, arc: &Upright, index: usize) -> Result<Item, &'static
         color: 0,
         comp: 0,
         arc: index as u32,
+        bounds: EMPTY,
     })
 }
 

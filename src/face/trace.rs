@@ -12,7 +12,7 @@
 
 use super::approx::Approx;
 use super::hash::FastMap;
-use super::index::{Bounds, EMPTY, Tree, hull};
+use super::index::{Bounds, Tree};
 use super::kernel::{CurveId, Kernel, NumId};
 use std::cmp::Ordering;
 
@@ -49,6 +49,8 @@ pub(crate) struct Item {
     pub(crate) comp: u32,
     /// The arc of the input that it is part of.
     pub(crate) arc: u32,
+    /// A box around it; `EMPTY` until it is asked for.
+    pub(crate) bounds: Bounds,
 }
 
 /// A component of the input of a walk: where its leftmost (then lowest) point is, and an item that
@@ -187,6 +189,7 @@ pub(crate) struct Tracer<'a> {
     pieces: Vec<Piece>,
     first_piece: Vec<u32>,
     trees: [Tree; 2],
+    boxes: Vec<Bounds>,
     pub(super) vertices: Vec<Vertex>,
     links: Vec<Link>,
     pub(super) germs: Vec<Germ>,
@@ -227,6 +230,7 @@ impl<'a> Tracer<'a> {
             pieces: Vec::with_capacity(items.len() * 2),
             first_piece: Vec::with_capacity(items.len() + 1),
             trees: [Tree::default(), Tree::default()],
+            boxes: Vec::new(),
             vertices: ends.map(free).collect(),
             links: Vec::with_capacity(items.len() * 2),
             germs: Vec::new(),
@@ -253,7 +257,14 @@ impl<'a> Tracer<'a> {
 
     /// Cuts the items into pieces, more where they are long, about four an item in all, and packs them.
     fn cut(&mut self) {
-        let spans: Vec<Bounds> = self.items.iter().map(|i| self.box_of(i)).collect();
+        let known = |i: &Item| {
+            if i.bounds[0] <= i.bounds[1] {
+                i.bounds
+            } else {
+                self.box_of(i)
+            }
+        };
+        let spans: Vec<Bounds> = self.items.iter().map(known).collect();
         // Long compared with what lies between the outer tenths of all arcs.
         let extent = |axis: usize| {
             let mut ends: Vec<f64> = spans
@@ -278,7 +289,7 @@ impl<'a> Tracer<'a> {
         };
         let total: f64 = spans.iter().map(length).sum();
         let per = if total > 0.0 {
-            3.0 * spans.len() as f64 / total
+            1.0 * spans.len() as f64 / total
         } else {
             0.0
         };
@@ -318,6 +329,7 @@ impl<'a> Tracer<'a> {
         }
         self.first_piece.push(self.pieces.len() as u32);
         self.trees = entries.map(Tree::new);
+        self.boxes = spans;
     }
 
     fn box_of(&self, item: &Item) -> Bounds {
@@ -329,9 +341,9 @@ impl<'a> Tracer<'a> {
             }
             Carrier::Vertical(lo, hi) => {
                 let (lo, hi) = (self.k.height(lo, item.l), self.k.height(hi, item.l));
-                let ends = [lo.lo().min(hi.lo()), lo.hi().max(hi.hi())];
-                if ends[0] <= ends[1] {
-                    [a, b, ends[0], ends[1]]
+                let known = [lo, hi].iter().all(|t| t.v.is_finite() && t.e.is_finite());
+                if known {
+                    [a, b, lo.lo().min(hi.lo()), lo.hi().max(hi.hi())]
                 } else {
                     [a, b, f64::NEG_INFINITY, f64::INFINITY]
                 }
@@ -341,13 +353,7 @@ impl<'a> Tracer<'a> {
 
     /// The box of a whole item.
     pub(super) fn bounds(&self, item: u32) -> Bounds {
-        let (a, b) = (
-            self.first_piece[item as usize],
-            self.first_piece[item as usize + 1],
-        );
-        self.pieces[a as usize..b as usize]
-            .iter()
-            .fold(EMPTY, |acc, p| hull(&acc, &p.bounds))
+        self.boxes[item as usize]
     }
 
     // ----- vertices -----
