@@ -602,13 +602,9 @@ impl Kernel {
         // Deflation: what remains after dividing by u − e has the other roots.
         let mut g = h;
         let mut n = 4;
-        let trim = |g: &[Approx; 5], mut n: usize| {
-            while n > 0 && g[n].sign() == Some(0) {
-                n -= 1;
-            }
-            n
-        };
-        n = trim(&g, n);
+        while n > 0 && g[n].sign() == Some(0) {
+            n -= 1;
+        }
         for &e in known {
             if n == 0 {
                 break;
@@ -926,7 +922,7 @@ fn settle(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
 /// Halves (not quite, since a root in the very middle is likely) and settles both parts.
 fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &mut Roots) -> bool {
     let (g, n) = (whole.g, whole.n);
-    if depth >= DEPTH || !(a < b) {
+    if depth >= DEPTH || a >= b {
         return false;
     }
     const CUT: f64 = 0.484375;
@@ -937,8 +933,8 @@ fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     }
     let mut left = [Approx::default(); 5];
     let mut right = *c;
-    for k in 0..=n {
-        left[k] = right[0];
+    for (k, first) in left.iter_mut().enumerate().take(n + 1) {
+        *first = right[0];
         for j in 0..n - k {
             right[j] = right[j] * r + right[j + 1] * s;
         }
@@ -979,7 +975,7 @@ fn refine(g: &[Approx], a: f64, b: f64, first: i32) -> Option<(f64, f64)> {
         };
         let still = (next - x).abs() <= x.abs() * f64::EPSILON;
         x = next;
-        if still || !(l < r) {
+        if still || l >= r {
             break;
         }
     }
