@@ -556,7 +556,7 @@ impl Runner<'_> {
         let last = *at == self.end;
         let stop = match next {
             Next::Rest => {
-                self.to_rest(&angle, at, entry);
+                self.come_to_rest(&angle, at, entry);
                 None
             }
             Next::Follow {
@@ -597,7 +597,7 @@ impl Runner<'_> {
         }
     }
 
-    fn to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
+    fn come_to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
         if self.held.is_empty() {
             // A touch without effect, where nothing was touching before or is after.
             let lying = |i: &Incident| self.slice.arc(i.arc).shape == Shape::Level;

@@ -16,7 +16,9 @@ const GAP: f64 = 16.0;
 const CAPTION: f64 = 46.0;
 
 /// Colours of the pawls: told apart by most eyes (Okabe and Ito).
-const PAWLS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9"];
+const PAWLS: [&str; 6] = [
+    "#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9",
+];
 
 /// The colour of a pawl.
 pub(super) fn colour(pawl: usize) -> &'static str {
@@ -51,7 +53,8 @@ fn weight(kind: &str) -> u32 {
 
 /// The instants to draw, in order, lettered.
 pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
-    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> = vec![(0, 0.0, 5, vec![])];
+    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> =
+        vec![(0, 0.0, 5, vec![])];
     let mut all: Vec<(usize, &EventDocument)> = Vec::new();
     for (i, pawl) in result.pawls.iter().enumerate() {
         all.extend(pawl.events.iter().map(|e| (i, e)));
@@ -102,9 +105,14 @@ fn moment(
     let mut poses = Vec::new();
     for pawl in 0..stage.pawls.len() {
         let mine = || events.iter().filter(|e| e.0 == pawl).map(|e| e.1);
-        let before = mine().next().map_or_else(|| stage.theta(pawl, phase, t), |e| e.theta);
+        let before = mine()
+            .next()
+            .map_or_else(|| stage.theta(pawl, phase, t), |e| e.theta);
         let snap = mine().find(|e| e.to_theta.is_some());
-        poses.push((snap.map_or(before, |e| e.theta), snap.and_then(|e| e.to_theta)));
+        poses.push((
+            snap.map_or(before, |e| e.theta),
+            snap.and_then(|e| e.to_theta),
+        ));
     }
     let (mut touching, mut left) = (Vec::new(), Vec::new());
     for (pawl, e) in events {
@@ -167,7 +175,12 @@ fn captions(result: &ResultDocument, events: &[(usize, &EventDocument)]) -> Vec<
 type Window = [f64; 4];
 
 fn around(points: impl IntoIterator<Item = Point>) -> Window {
-    let none = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    let none = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
     points.into_iter().fold(none, |w, [x, y]| {
         [w[0].min(x), w[1].min(y), w[2].max(x), w[3].max(y)]
     })
@@ -198,10 +211,20 @@ fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
     let [w, h] = size(&near);
     let reach = 0.3 * w.max(h);
     if let Some(root) = &stage.root {
-        let frame = [near[0] - reach, near[1] - reach, near[2] + reach, near[3] + reach];
+        let frame = [
+            near[0] - reach,
+            near[1] - reach,
+            near[2] + reach,
+            near[3] + reach,
+        ];
         let part = around(clipped(root, frame));
         if part[0] <= part[2] {
-            near = [near[0].min(part[0]), near[1].min(part[1]), near[2].max(part[2]), near[3].max(part[3])];
+            near = [
+                near[0].min(part[0]),
+                near[1].min(part[1]),
+                near[2].max(part[2]),
+                near[3].max(part[3]),
+            ];
         }
     }
     let paths = around(offsets.iter().copied());
@@ -212,9 +235,19 @@ fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
         .iter()
         .map(|o| {
             let base = if stays {
-                [near[0] + paths[0], near[1] + paths[1], near[2] + paths[2], near[3] + paths[3]]
+                [
+                    near[0] + paths[0],
+                    near[1] + paths[1],
+                    near[2] + paths[2],
+                    near[3] + paths[3],
+                ]
             } else {
-                [near[0] + o[0], near[1] + o[1], near[2] + o[0], near[3] + o[1]]
+                [
+                    near[0] + o[0],
+                    near[1] + o[1],
+                    near[2] + o[0],
+                    near[3] + o[1],
+                ]
             };
             framed(base)
         })
@@ -230,16 +263,36 @@ fn framed(w: Window) -> Window {
     dy += margin;
     dx = dx.max(0.62 * dy);
     dy = dy.max(dx / 1.7);
-    [c[0] - dx / 2.0, c[1] - dy / 2.0, c[0] + dx / 2.0, c[1] + dy / 2.0]
+    [
+        c[0] - dx / 2.0,
+        c[1] - dy / 2.0,
+        c[0] + dx / 2.0,
+        c[1] + dy / 2.0,
+    ]
 }
 
 /// Draws the panels into [x, y, width]; returns the y below them.
-pub(super) fn draw(page: &mut Svg, stage: &Stage, moments: &[Moment], [x, y, width]: [f64; 3]) -> f64 {
+pub(super) fn draw(
+    page: &mut Svg,
+    stage: &Stage,
+    moments: &[Moment],
+    [x, y, width]: [f64; 3],
+) -> f64 {
     let windows = windows(stage, moments);
-    let Some(first) = windows.first() else { return y };
+    let Some(first) = windows.first() else {
+        return y;
+    };
     let [dx, dy] = size(first);
     if !(dx.is_finite() && dy.is_finite()) {
-        page.text(x, y + 14.0, 12.0, MUTED, "start", false, "The scene is too large to be drawn.");
+        page.text(
+            x,
+            y + 14.0,
+            12.0,
+            MUTED,
+            "start",
+            false,
+            "The scene is too large to be drawn.",
+        );
         return y + 20.0;
     }
     let (columns, w) = columns(moments.len(), dx / dy, width);
@@ -276,17 +329,29 @@ fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
 fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64; 4]) {
     let [px, py, w, h] = rect;
     let scale = w / (window[2] - window[0]);
-    let put = |p: Point| [px + (p[0] - window[0]) * scale, py + (window[3] - p[1]) * scale];
-    let slack = 0.2 * size(window)[0].max(size(window)[1]);
-    let beyond = [window[0] - slack, window[1] - slack, window[2] + slack, window[3] + slack];
-    let placed = |ring: &[Point]| -> Vec<Point> {
-        clipped(ring, beyond).into_iter().map(put).collect()
+    let put = |p: Point| {
+        [
+            px + (p[0] - window[0]) * scale,
+            py + (window[3] - p[1]) * scale,
+        ]
     };
+    let slack = 0.2 * size(window)[0].max(size(window)[1]);
+    let beyond = [
+        window[0] - slack,
+        window[1] - slack,
+        window[2] + slack,
+        window[3] + slack,
+    ];
+    let placed =
+        |ring: &[Point]| -> Vec<Point> { clipped(ring, beyond).into_iter().map(put).collect() };
     page.rect(rect, "#fbfcfd", "none");
     page.clip(rect);
     for (_, rings) in &stage.obstacles {
         let rings: Vec<Vec<Point>> = rings.iter().map(|r| placed(r)).collect();
-        page.shape(&rings, "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"");
+        page.shape(
+            &rings,
+            "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"",
+        );
     }
     let offset = stage.offset(m.phase, m.t);
     if let Some(root) = stage.root_at(offset) {
@@ -296,11 +361,14 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
     for (i, (before, after)) in m.poses.iter().enumerate() {
         let c = colour(i);
         let now = placed(&stage.pawl_at(i, offset, after.unwrap_or(*before)));
-        let style = format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
+        let style =
+            format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
         page.shape(&[now], &style);
         if after.is_some() {
             let ghost = placed(&stage.pawl_at(i, offset, *before));
-            let style = format!("fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\"");
+            let style = format!(
+                "fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\""
+            );
             page.shape(&[ghost], &style);
         }
     }
@@ -322,9 +390,21 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
     page.text(px, py + h + 15.0, 12.0, INK, "start", true, &head);
     let (shown, rest) = m.captions.split_at(m.captions.len().min(2));
     for (k, line) in shown.iter().enumerate() {
-        let more = if k == 1 && !rest.is_empty() { ", …" } else { "" };
+        let more = if k == 1 && !rest.is_empty() {
+            ", …"
+        } else {
+            ""
+        };
         let line = fit(&(line.clone() + more), 10.5, w);
-        page.text(px, py + h + 28.0 + 12.0 * k as f64, 10.5, MUTED, "start", false, &line);
+        page.text(
+            px,
+            py + h + 28.0 + 12.0 * k as f64,
+            10.5,
+            MUTED,
+            "start",
+            false,
+            &line,
+        );
     }
 }
 
@@ -338,7 +418,11 @@ fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
     let half = [9.0 * vx / l, -9.0 * vy / l];
     let c = [px + 15.0, py + 15.0];
     page.circle(c, 11.5, "#ffffff", RULE, 0.8);
-    page.arrow([c[0] - half[0], c[1] - half[1]], [c[0] + half[0], c[1] + half[1]], INK);
+    page.arrow(
+        [c[0] - half[0], c[1] - half[1]],
+        [c[0] + half[0], c[1] + half[1]],
+        INK,
+    );
 }
 
 /// What the signs in the panels mean, and a scale.
@@ -355,7 +439,11 @@ fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
         page.text(*at, y + 3.8, 11.0, MUTED, "start", false, text);
         *at += super::text_width(text, 11.0) + 20.0;
     };
-    let units = if unit == 1.0 { "1 unit".to_owned() } else { format!("{} units", digits(unit, 3)) };
+    let units = if unit == 1.0 {
+        "1 unit".to_owned()
+    } else {
+        format!("{} units", digits(unit, 3))
+    };
     word(page, &mut at, &units);
     page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
     at += 12.0;
