@@ -96,7 +96,7 @@ fn certify(p: &Poly, roots: &[Algebraic]) {
             x.lo <= x.hi
                 && (x.lo == x.hi
                     || x.lo.next_up().next_up() >= x.hi
-                    || x.width() < 2e-15 * x.hi.abs().max(x.lo.abs())),
+                    || x.width() < 1.1e-14 * x.hi.abs().max(x.lo.abs())),
             "{x:?}"
         );
         if x.lo.is_finite() {
