@@ -422,7 +422,7 @@ fn homogenise(p: &Poly, num: &Poly, den: &Poly) -> Poly {
     let mut weight = Poly::constant(Int::one());
     let mut acc = Poly::constant(p.coeff(n));
     for i in (0..n).rev() {
-        weight = weight * den;
+        weight *= den;
         acc = acc * num + weight.scale(&p.coeff(i));
     }
     acc

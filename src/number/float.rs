@@ -222,8 +222,8 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) -> Option<()> {
             }
         };
         let mut left: Row = [Interval::point(0.0); MOST + 1];
-        for l in 0..=n {
-            left[l] = scale(b[0], n - l);
+        for (l, c) in left[..=n].iter_mut().enumerate() {
+            *c = scale(b[0], n - l);
             for j in 0..n - l {
                 b[j] = b[j] + b[j + 1];
             }
