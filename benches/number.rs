@@ -1,6 +1,7 @@
 //! What the number layer costs, in microseconds: `cargo bench --bench number`.
 //!
 //! No harness: each line is the least of several batches, which on a shared machine says more than a mean.
+use num_rational::BigRational;
 use snapfit::number::{Algebraic, Int, Poly, Rat};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -206,6 +207,18 @@ fn main() {
     line("irreducible factors of a product of quartics", || {
         split.irreducible_factors()
     });
+    let q = quartic.ratio(&f, &g);
+    let r = quartic.ratio(&f, &g);
+    line("the same, its polynomial made", || {
+        let q = quartic.ratio(&f, &g);
+        q.defining_polynomial()
+    });
+    line("two such quotients compared for equality", || q == r);
+    let (p, t) = (Poly::from_i64(&[3, -20, 7]), Poly::from_i64(&[-11, 5, 2]));
+    let (lo, hi) = (Rat::frac(1, 16), Rat::frac(1, 4));
+    line("root of p + √2·q, located in [1/16, 1/4]", || {
+        sqrt2.root_over(&p, &t, &mut |_| (lo.clone(), hi.clone()))
+    });
     line("nearest double of √2", || sqrt2.nearest_f64());
 
     for bits in [15, 30, 60, 200, 1000] {
@@ -218,6 +231,15 @@ fn main() {
         line(
             &format!("Rat add, {bits} bits over {bits} bits"),
             each(&r, |(a, b)| a + b),
+        );
+        let theirs: Vec<(BigRational, BigRational)> = r
+            .iter()
+            .cloned()
+            .map(|(a, b)| (a.into(), b.into()))
+            .collect();
+        line(
+            &format!("num-rational add, {bits} bits over {bits} bits"),
+            each(&theirs, |(a, b)| a + b),
         );
         line(
             &format!("Rat multiply, {bits} bits over {bits} bits"),

@@ -276,3 +276,63 @@ fn shrink_from_zero(p: &Poly, lo: &mut Int, hi: &mut Int, e: &mut u64) {
         *hi = far;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Algebraic;
+
+    /// A reproducible stream of small and large coefficients.
+    fn coefficients(seed: &mut u64, n: usize, bits: u32) -> Vec<Int> {
+        (0..n)
+            .map(|_| {
+                *seed = seed
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                let v =
+                    Int::from((*seed >> (64 - bits.min(63))) as i64 - (1i64 << (bits.min(63) - 1)));
+                v.shl(u64::from(bits.saturating_sub(63)) * (*seed & 1))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn doubles_walk_the_same_tree_as_the_exact_search() {
+        let (mut seed, mut settled) = (7, 0);
+        for round in 0..600usize {
+            let (n, bits) = (2 + round % 9, [3, 10, 40, 63, 200, 1100][round % 6]);
+            let p = Poly::new(coefficients(&mut seed, n + 1, bits)).squarefree();
+            if p.degree().is_none_or(|d| d < 1) || p.coeff(0).is_zero() {
+                continue;
+            }
+            let exact = exact(&p, p.coeffs(), false);
+            if let Some(fast) = float::isolate(p.coeffs()) {
+                settled += 1;
+                let fast = Algebraic::from_isolated(p.clone(), fast);
+                assert_eq!(fast, Algebraic::from_isolated(p, exact));
+            }
+        }
+        // Not merely correct: the quick way is the usual one.
+        assert!(settled > 400, "{settled}");
+    }
+
+    #[test]
+    fn the_bound_lies_above_the_roots() {
+        for c in [
+            [-8i64, 0, 0, 1],
+            [-7, 0, 0, 1],
+            [-1, 0, 0, 1000],
+            [5, -100, 3, 1],
+            [0, 0, -1, 1],
+        ] {
+            let p = Poly::from_i64(&c);
+            let bound = Rat::dyadic(Int::one(), root_bound(p.coeffs()));
+            for r in p.real_roots() {
+                assert!(
+                    r.cmp_rat(&bound).is_lt() && r.cmp_rat(&-&bound).is_gt(),
+                    "{p}"
+                );
+            }
+        }
+    }
+}
