@@ -215,8 +215,8 @@ fn main() {
     });
     line("two such quotients compared for equality", || q == r);
     let (p, t) = (Poly::from_i64(&[3, -20, 7]), Poly::from_i64(&[-11, 5, 2]));
-    let (lo, hi) = (Rat::frac(1, 16), Rat::frac(1, 4));
-    line("root of p + √2·q, located in [1/16, 1/4]", || {
+    let (lo, hi) = (Rat::frac(15, 8), Rat::frac(33, 16));
+    line("root of p + √2·q, located in [15/8, 33/16]", || {
         sqrt2.root_over(&p, &t, &mut |_| (lo.clone(), hi.clone()))
     });
     line("nearest double of √2", || sqrt2.nearest_f64());
