@@ -1,5 +1,9 @@
 //! Geometry against slow ways that share nothing with it: regions as sets of unit cells, the
 //! plane cut into vertical slabs, all pairs of edges by solving their equations.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test that unwraps nothing fails, as it should"
+)]
 
 #[allow(unreachable_pub, reason = "a test file is a crate of its own")]
 mod common;
