@@ -6,7 +6,7 @@
 //! piece shows none or one. On a square-free polynomial this ends. Positive and negative roots are
 //! searched apart, from zero to a power of two above all roots.
 
-use super::{Int, Poly, Rat};
+use super::{Int, Poly, Rat, float};
 
 /// One real root.
 pub(crate) enum Isolated {
@@ -23,8 +23,22 @@ pub(crate) enum Isolated {
     },
 }
 
+impl Isolated {
+    /// The root of the polynomial in −x.
+    pub(crate) fn mirror(&mut self) {
+        match self {
+            Isolated::Exact(v) => *v = -&*v,
+            Isolated::Open { lo, hi, .. } => {
+                let t = -&*lo;
+                *lo = -&*hi;
+                *hi = t;
+            }
+        }
+    }
+}
+
 /// A power of two 2^k, strictly above the size of every complex root (Fujiwara's bound).
-fn root_bound(c: &[Int]) -> i64 {
+pub(crate) fn root_bound(c: &[Int]) -> i64 {
     let n = c.len() - 1;
     let lead = c[n].bits() as i64;
     let most = (1..=n)
@@ -193,7 +207,14 @@ pub(crate) fn isolate(p: &Poly) -> Vec<Isolated> {
     let zero = c[0].is_zero();
     if zero {
         c = &c[1..];
+    } else if let Some(found) = float::isolate(c) {
+        return found;
     }
+    exact(p, c, zero)
+}
+
+/// The exact search: `c` are the coefficients of `p` without the root zero.
+fn exact(p: &Poly, c: &[Int], zero: bool) -> Vec<Isolated> {
     let mut out = Vec::new();
     if c.len() > 1 {
         let mirrored: Vec<Int> = c
@@ -203,16 +224,7 @@ pub(crate) fn isolate(p: &Poly) -> Vec<Isolated> {
             .collect();
         positive(&mirrored, &mut out);
         out.reverse();
-        for r in &mut out {
-            match r {
-                Isolated::Exact(v) => *v = -&*v,
-                Isolated::Open { lo, hi, .. } => {
-                    let t = -&*lo;
-                    *lo = -&*hi;
-                    *hi = t;
-                }
-            }
-        }
+        out.iter_mut().for_each(Isolated::mirror);
     }
     if zero {
         out.push(Isolated::Exact(Rat::zero()));
