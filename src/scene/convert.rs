@@ -30,6 +30,9 @@ pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// Most errors that are listed in one run.
+pub const MAX_ERRORS: usize = 100;
+
 /// A scene in the making: what could be read, where it stands, and what is wrong so far.
 pub(super) struct Conversion<'a> {
     pub(super) tree: &'a Node,
@@ -99,7 +102,7 @@ impl<'a> Conversion<'a> {
         (scene, self.errors, self.warnings)
     }
 
-    /// Notes an error at a place.
+    /// Notes an error at a place, unless there are [`MAX_ERRORS`] already.
     pub(super) fn error(
         &mut self,
         span: Span,
@@ -107,6 +110,9 @@ impl<'a> Conversion<'a> {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
+        if self.errors.len() >= MAX_ERRORS {
+            return;
+        }
         self.errors.push(
             Diagnostic::error(self.sources, span, code)
                 .message(message)
@@ -328,7 +334,7 @@ impl<'a> Conversion<'a> {
             .find(|(table, _)| *table == name)
             .map_or(&[] as &[&str], |(_, keys)| keys);
         for entry in entries {
-            if !keys.contains(&entry.key.as_str()) {
+            if !keys.contains(&entry.key.as_str()) && self.errors.len() < MAX_ERRORS {
                 let place = match name {
                     "" => "at the top of a scene".to_owned(),
                     _ => format!("in `{name}`"),
@@ -426,7 +432,11 @@ fn nearest<'k>(key: &str, known: &[&'k str]) -> Option<&'k str> {
 /// Whether a table has a key that is a slip of this one: then its absence needs no message.
 pub(super) fn misspelt(table: &Node, key: &str) -> bool {
     match &table.kind {
-        Kind::Table(entries) => entries.iter().any(|e| nearest(&e.key, &[key]).is_some()),
+        // Only a file that means harm has more keys than the first few.
+        Kind::Table(entries) => entries
+            .iter()
+            .take(MAX_ERRORS)
+            .any(|e| nearest(&e.key, &[key]).is_some()),
         _ => false,
     }
 }

@@ -50,6 +50,7 @@ mod values;
 mod write;
 
 pub use check::{CheckReport, Feature, PawlReport, check};
+pub use convert::MAX_ERRORS;
 pub use diagnostic::{CODES, Diagnostic, Rendering, SceneError, Severity};
 pub use overrides::apply_overrides;
 pub use read::{

@@ -8,7 +8,7 @@ use super::types::{Motion, Pawl};
 use crate::geometry::Vec2;
 use crate::geometry::{Defect, EdgeRef, Meeting, Polygon, defects, interiors_intersect};
 use crate::number::Rat;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Judges all that was read. Adds to the errors and warnings of the conversion.
 pub(super) fn scene(c: &mut Conversion<'_>) {
@@ -77,8 +77,9 @@ fn names(c: &mut Conversion<'_>) {
             }
         }
     }
+    let taken: HashSet<&String> = obstacles.iter().map(|(_, name)| name).collect();
     for (k, name) in &pawls {
-        if obstacles.iter().any(|(_, other)| other == name) {
+        if taken.contains(name) {
             c.warning(
                 place(c, "pawl", *k, "name"),
                 "shared-name",
