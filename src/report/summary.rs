@@ -32,12 +32,12 @@ pub fn summary(result: &ResultDocument, style: Style) -> String {
     for branch in result.outcome.branches.iter().flatten() {
         let on: Vec<String> = branch.contacts.iter().map(super::words::contact).collect();
         let holds = if branch.sticks { ", where friction holds it" } else { "" };
-        let on = if on.is_empty() { String::new() } else { format!(" on {}", on.join(", ")) };
+        let on = if on.is_empty() { String::new() } else { format!(", driven by {}", on.join(", ")) };
         let _ = writeln!(out, "  {}{on}{holds}", branch.direction);
     }
     for pawl in &result.pawls {
         out.push('\n');
-        out.push_str(&style.paint("1", &format!("pawl {}", pawl.name)));
+        out.push_str(&style.paint("1", &format!("pawl “{}”", pawl.name)));
         out.push('\n');
         out.push_str(&table(&pawl.events, style));
     }
