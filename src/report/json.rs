@@ -316,7 +316,9 @@ impl ResultDocument {
 /// The JSON Schema of a result (draft 2020-12), as `snapfit schema result` prints it.
 pub fn result_schema() -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize();
-    let mut schema = settings.into_generator().into_root_schema_for::<ResultDocument>();
+    let mut schema = settings
+        .into_generator()
+        .into_root_schema_for::<ResultDocument>();
     schema.insert("$id".to_owned(), "snapfit.result/1".into());
     schema
 }
@@ -361,8 +363,14 @@ impl Writer<'_> {
     fn event(&mut self, event: &motion::Event) -> EventDocument {
         let at = self.numbers.orientation(&event.angle);
         let to = event.to.as_ref().map(|a| self.numbers.orientation(a));
-        let pawl = event.contacts.iter().map(|c| EventContact::Pawl(self.contact(c)));
-        let root = event.root_contacts.iter().map(|c| EventContact::Root(self.root_contact(c)));
+        let pawl = event
+            .contacts
+            .iter()
+            .map(|c| EventContact::Pawl(self.contact(c)));
+        let root = event
+            .root_contacts
+            .iter()
+            .map(|c| EventContact::Root(self.root_contact(c)));
         EventDocument {
             kind: event.kind.name(),
             contacts: pawl.chain(root).collect(),
@@ -390,7 +398,13 @@ impl Writer<'_> {
                 s.also.iter().map(|c| self.contact(c)).collect()
             }),
             curve: sliding.map(curve),
-            branch: sliding.map(|s| if s.branch < 0 && !on_stop(s) { "-" } else { "+" }),
+            branch: sliding.map(|s| {
+                if s.branch < 0 && !on_stop(s) {
+                    "-"
+                } else {
+                    "+"
+                }
+            }),
         }
     }
 

@@ -131,7 +131,10 @@ mod tests {
         let compact = r#"{"a":[],"b":{},"c":"x:,{[\"é","d":[[1,2],[3,[4.5,null]]],"e":true}"#;
         for width in [0, 10, 20, 40, 200] {
             let again: serde_json::Value = serde_json::from_str(&pretty(compact, width)).unwrap();
-            assert_eq!(again, serde_json::from_str::<serde_json::Value>(compact).unwrap());
+            assert_eq!(
+                again,
+                serde_json::from_str::<serde_json::Value>(compact).unwrap()
+            );
         }
         assert!(!pretty(compact, 200).contains('\n'));
     }

@@ -58,7 +58,11 @@ impl Num {
         Num {
             value: x.nearest_f64(),
             exact: Some(Exact::Root {
-                polynomial: polynomial.coeffs().iter().map(ToString::to_string).collect(),
+                polynomial: polynomial
+                    .coeffs()
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect(),
                 interval: [lo.to_string(), hi.to_string()],
             }),
         }

@@ -28,7 +28,15 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
     let mut page = Svg::new();
     let inner = WIDTH - 2.0 * MARGIN;
     let mut y = MARGIN + 16.0;
-    page.text(MARGIN, y, 17.0, INK, "start", true, &fit(&headline(result), 17.0, inner));
+    page.text(
+        MARGIN,
+        y,
+        17.0,
+        INK,
+        "start",
+        true,
+        &fit(&headline(result), 17.0, inner),
+    );
     if let Some(why) = reason(result) {
         for line in wrap(&why, 12.5, inner) {
             y += 18.0;

@@ -44,15 +44,25 @@ impl Names {
             let half = [0.5 * text_width(name, SIZE) + 2.0, 0.5 * SIZE + 1.0];
             // What of the shape's box is seen, less half a name.
             let points = || rings.iter().flatten();
-            let least = |axis: usize, edge: f64| points().fold(f64::INFINITY, |m, p| m.min(p[axis])).max(edge);
-            let most = |axis: usize, edge: f64| points().fold(f64::NEG_INFINITY, |m, p| m.max(p[axis])).min(edge);
+            let least = |axis: usize, edge: f64| {
+                points()
+                    .fold(f64::INFINITY, |m, p| m.min(p[axis]))
+                    .max(edge)
+            };
+            let most = |axis: usize, edge: f64| {
+                points()
+                    .fold(f64::NEG_INFINITY, |m, p| m.max(p[axis]))
+                    .min(edge)
+            };
             let lo = [least(0, x) + half[0], least(1, y) + half[1]];
             let hi = [most(0, x + w) - half[0], most(1, y + h) - half[1]];
             if lo[0] > hi[0] || lo[1] > hi[1] {
                 continue;
             }
             let middle = [(lo[0] + hi[0]) / 2.0, (lo[1] + hi[1]) / 2.0];
-            let step = |axis: usize, k: usize| lo[axis] + (hi[axis] - lo[axis]) * k as f64 / (GRID - 1) as f64;
+            let step = |axis: usize, k: usize| {
+                lo[axis] + (hi[axis] - lo[axis]) * k as f64 / (GRID - 1) as f64
+            };
             let grid = (0..GRID * GRID).map(|k| [step(0, k % GRID), step(1, k / GRID)]);
             let off = |p: &Point| (p[0] - middle[0]).abs() + (p[1] - middle[1]).abs();
             let free = grid.filter(|c| self.fits(*c, half, rings));
@@ -65,9 +75,16 @@ impl Names {
     /// Whether a name about c lies within the shape and outside of all that is to be avoided.
     fn fits(&self, c: Point, half: Point, rings: &[Vec<Point>]) -> bool {
         let steps = [-1.0, -0.5, 0.0, 0.5, 1.0];
-        steps.iter().flat_map(|i| steps.map(|j| [c[0] + i * half[0], c[1] + j * half[1]])).all(|p| {
-            inside(p, rings) && self.obstructions.iter().all(|o| !inside(p, std::slice::from_ref(o)))
-        })
+        steps
+            .iter()
+            .flat_map(|i| steps.map(|j| [c[0] + i * half[0], c[1] + j * half[1]]))
+            .all(|p| {
+                inside(p, rings)
+                    && self
+                        .obstructions
+                        .iter()
+                        .all(|o| !inside(p, std::slice::from_ref(o)))
+            })
     }
 }
 

@@ -17,7 +17,9 @@ const GAP: f64 = 16.0;
 const CAPTION: f64 = 46.0;
 
 /// Colours of the pawls: told apart by most eyes (Okabe and Ito).
-const PAWLS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9"];
+const PAWLS: [&str; 6] = [
+    "#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9",
+];
 
 /// The colour of a pawl.
 pub(super) fn colour(pawl: usize) -> &'static str {
@@ -56,40 +58,57 @@ fn weight(kind: &str) -> u32 {
     }
 }
 
+/// Events of one instant, with the index of their pawl.
+struct Group<'a> {
+    phase: usize,
+    t: f64,
+    weight: u32,
+    events: Vec<(usize, &'a EventDocument)>,
+}
+
 /// The instants to draw, in order, lettered.
 pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
-    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> = vec![(0, 0.0, 5, vec![])];
     let mut all: Vec<(usize, &EventDocument)> = Vec::new();
     for (i, pawl) in result.pawls.iter().enumerate() {
-        all.extend(pawl.events.iter().map(|e| (i, e)));
+        let drawn = pawl.events.iter().filter(|e| e.time.approx().is_finite());
+        all.extend(drawn.map(|e| (i, e)));
     }
-    all.sort_by(|a, b| {
-        let key = |e: &EventDocument| (e.phase, e.time.approx());
-        let (ka, kb) = (key(a.1), key(b.1));
-        ka.0.cmp(&kb.0).then(ka.1.total_cmp(&kb.1))
+    all.sort_by(|(_, a), (_, b)| {
+        let times = a.time.approx().total_cmp(&b.time.approx());
+        a.phase.cmp(&b.phase).then(times)
     });
+    let mut groups = vec![Group {
+        phase: 0,
+        t: 0.0,
+        weight: 5,
+        events: Vec::new(),
+    }];
     for (pawl, event) in all {
         let (phase, t) = (event.phase, event.time.approx());
-        if !t.is_finite() {
-            continue;
-        }
         match groups.last_mut() {
-            Some(g) if g.0 == phase && g.1 == t => {
-                g.2 = g.2.max(weight(event.kind));
-                g.3.push((pawl, event));
+            Some(g) if g.phase == phase && g.t == t => {
+                g.weight = g.weight.max(weight(event.kind));
+                g.events.push((pawl, event));
             }
-            _ => groups.push((phase, t, weight(event.kind), vec![(pawl, event)])),
+            _ => groups.push(Group {
+                phase,
+                t,
+                weight: weight(event.kind),
+                events: vec![(pawl, event)],
+            }),
         }
     }
-    let mut ranked: Vec<usize> = (0..groups.len()).filter(|&i| groups[i].2 > 0).collect();
-    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].2), i));
+    let mut ranked: Vec<usize> = (0..groups.len())
+        .filter(|&i| groups[i].weight > 0)
+        .collect();
+    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].weight), i));
     ranked.truncate(MOST);
     ranked.sort_unstable();
     let chosen = ranked.into_iter().enumerate();
     chosen
         .map(|(k, i)| {
-            let (phase, t, _, events) = &groups[i];
-            moment(stage, result, letter(k), (*phase, *t), events)
+            let g = &groups[i];
+            moment(stage, result, letter(k), (g.phase, g.t), &g.events)
         })
         .collect()
 }
@@ -109,9 +128,14 @@ fn moment(
     let mut poses = Vec::new();
     for pawl in 0..stage.pawls.len() {
         let mine = || events.iter().filter(|e| e.0 == pawl).map(|e| e.1);
-        let before = mine().next().map_or_else(|| stage.theta(pawl, phase, t), |e| e.theta);
+        let before = mine()
+            .next()
+            .map_or_else(|| stage.theta(pawl, phase, t), |e| e.theta);
         let snap = mine().find(|e| e.to_theta.is_some());
-        poses.push((snap.map_or(before, |e| e.theta), snap.and_then(|e| e.to_theta)));
+        poses.push((
+            snap.map_or(before, |e| e.theta),
+            snap.and_then(|e| e.to_theta),
+        ));
     }
     let (mut touching, mut left) = (Vec::new(), Vec::new());
     for (pawl, e) in events {
@@ -175,7 +199,12 @@ fn captions(result: &ResultDocument, events: &[(usize, &EventDocument)]) -> Vec<
 type Window = [f64; 4];
 
 fn around(points: impl IntoIterator<Item = Point>) -> Window {
-    let none = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    let none = [
+        f64::INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NEG_INFINITY,
+    ];
     points.into_iter().fold(none, |w, [x, y]| {
         [w[0].min(x), w[1].min(y), w[2].max(x), w[3].max(y)]
     })
@@ -206,10 +235,20 @@ fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
     let [w, h] = size(&near);
     let reach = 0.3 * w.max(h);
     if let Some(root) = &stage.root {
-        let frame = [near[0] - reach, near[1] - reach, near[2] + reach, near[3] + reach];
+        let frame = [
+            near[0] - reach,
+            near[1] - reach,
+            near[2] + reach,
+            near[3] + reach,
+        ];
         let part = around(clipped(root, frame));
         if part[0] <= part[2] {
-            near = [near[0].min(part[0]), near[1].min(part[1]), near[2].max(part[2]), near[3].max(part[3])];
+            near = [
+                near[0].min(part[0]),
+                near[1].min(part[1]),
+                near[2].max(part[2]),
+                near[3].max(part[3]),
+            ];
         }
     }
     let paths = around(offsets.iter().copied());
@@ -220,9 +259,19 @@ fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
         .iter()
         .map(|o| {
             let base = if stays {
-                [near[0] + paths[0], near[1] + paths[1], near[2] + paths[2], near[3] + paths[3]]
+                [
+                    near[0] + paths[0],
+                    near[1] + paths[1],
+                    near[2] + paths[2],
+                    near[3] + paths[3],
+                ]
             } else {
-                [near[0] + o[0], near[1] + o[1], near[2] + o[0], near[3] + o[1]]
+                [
+                    near[0] + o[0],
+                    near[1] + o[1],
+                    near[2] + o[0],
+                    near[3] + o[1],
+                ]
             };
             framed(base)
         })
@@ -238,16 +287,36 @@ fn framed(w: Window) -> Window {
     dy += margin;
     dx = dx.max(0.62 * dy);
     dy = dy.max(dx / 1.7);
-    [c[0] - dx / 2.0, c[1] - dy / 2.0, c[0] + dx / 2.0, c[1] + dy / 2.0]
+    [
+        c[0] - dx / 2.0,
+        c[1] - dy / 2.0,
+        c[0] + dx / 2.0,
+        c[1] + dy / 2.0,
+    ]
 }
 
 /// Draws the panels into [x, y, width]; returns the y below them.
-pub(super) fn draw(page: &mut Svg, stage: &Stage, moments: &[Moment], [x, y, width]: [f64; 3]) -> f64 {
+pub(super) fn draw(
+    page: &mut Svg,
+    stage: &Stage,
+    moments: &[Moment],
+    [x, y, width]: [f64; 3],
+) -> f64 {
     let windows = windows(stage, moments);
-    let Some(first) = windows.first() else { return y };
+    let Some(first) = windows.first() else {
+        return y;
+    };
     let [dx, dy] = size(first);
     if !(dx.is_finite() && dy.is_finite()) {
-        page.text(x, y + 14.0, 12.0, MUTED, "start", false, "The scene is too large to be drawn.");
+        page.text(
+            x,
+            y + 14.0,
+            12.0,
+            MUTED,
+            "start",
+            false,
+            "The scene is too large to be drawn.",
+        );
         return y + 20.0;
     }
     let (columns, w) = columns(moments.len(), dx / dy, width);
@@ -277,25 +346,39 @@ fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
         let blank = width - columns as f64 * (column(columns) + GAP);
         (height - 0.5 * width).abs() + 0.3 * empty * width + 0.5 * blank
     };
-    let best = (3..=6).min_by(|a, b| badness(*a).total_cmp(&badness(*b))).unwrap_or(4);
+    let best = (3..=6)
+        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
+        .unwrap_or(4);
     (best, column(best))
 }
 
 fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64; 4]) {
     let [px, py, w, h] = rect;
     let scale = w / (window[2] - window[0]);
-    let put = |p: Point| [px + (p[0] - window[0]) * scale, py + (window[3] - p[1]) * scale];
-    let slack = 0.2 * size(window)[0].max(size(window)[1]);
-    let beyond = [window[0] - slack, window[1] - slack, window[2] + slack, window[3] + slack];
-    let placed = |ring: &[Point]| -> Vec<Point> {
-        clipped(ring, beyond).into_iter().map(put).collect()
+    let put = |p: Point| {
+        [
+            px + (p[0] - window[0]) * scale,
+            py + (window[3] - p[1]) * scale,
+        ]
     };
+    let slack = 0.2 * size(window)[0].max(size(window)[1]);
+    let beyond = [
+        window[0] - slack,
+        window[1] - slack,
+        window[2] + slack,
+        window[3] + slack,
+    ];
+    let placed =
+        |ring: &[Point]| -> Vec<Point> { clipped(ring, beyond).into_iter().map(put).collect() };
     page.rect(rect, "#fbfcfd", "none");
     page.clip(rect);
     let mut names = Names::new(rect);
     for (name, rings) in &stage.obstacles {
         let rings: Vec<Vec<Point>> = rings.iter().map(|r| placed(r)).collect();
-        page.shape(&rings, "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"");
+        page.shape(
+            &rings,
+            "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"",
+        );
         names.ask(name, rings);
     }
     let offset = stage.offset(m.phase, m.t);
@@ -308,12 +391,15 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
     for (i, (before, after)) in m.poses.iter().enumerate() {
         let c = colour(i);
         let now = placed(&stage.pawl_at(i, offset, after.unwrap_or(*before)));
-        let style = format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
+        let style =
+            format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
         page.shape(std::slice::from_ref(&now), &style);
         names.avoid(now);
         if after.is_some() {
             let ghost = placed(&stage.pawl_at(i, offset, *before));
-            let style = format!("fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\"");
+            let style = format!(
+                "fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\""
+            );
             page.shape(std::slice::from_ref(&ghost), &style);
             names.avoid(ghost);
         }
@@ -337,9 +423,21 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
     page.text(px, py + h + 15.0, 12.0, INK, "start", true, &head);
     let (shown, rest) = m.captions.split_at(m.captions.len().min(2));
     for (k, line) in shown.iter().enumerate() {
-        let more = if k == 1 && !rest.is_empty() { ", …" } else { "" };
+        let more = if k == 1 && !rest.is_empty() {
+            ", …"
+        } else {
+            ""
+        };
         let line = fit(&(line.clone() + more), 10.5, w);
-        page.text(px, py + h + 28.0 + 12.0 * k as f64, 10.5, MUTED, "start", false, &line);
+        page.text(
+            px,
+            py + h + 28.0 + 12.0 * k as f64,
+            10.5,
+            MUTED,
+            "start",
+            false,
+            &line,
+        );
     }
 }
 
@@ -353,7 +451,11 @@ fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
     let half = [9.0 * vx / l, -9.0 * vy / l];
     let c = [px + 15.0, py + 15.0];
     page.circle(c, 11.5, "#ffffff", RULE, 0.8);
-    page.arrow([c[0] - half[0], c[1] - half[1]], [c[0] + half[0], c[1] + half[1]], INK);
+    page.arrow(
+        [c[0] - half[0], c[1] - half[1]],
+        [c[0] + half[0], c[1] + half[1]],
+        INK,
+    );
 }
 
 /// What the signs in the panels mean, and a scale.
@@ -370,7 +472,11 @@ fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, 
         page.text(*at, y + 3.8, 11.0, MUTED, "start", false, text);
         *at += super::text_width(text, 11.0) + 20.0;
     };
-    let units = if unit == 1.0 { "1 unit".to_owned() } else { format!("{} units", digits(unit, 3)) };
+    let units = if unit == 1.0 {
+        "1 unit".to_owned()
+    } else {
+        format!("{} units", digits(unit, 3))
+    };
     word(page, &mut at, &units);
     page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
     at += 12.0;
@@ -384,7 +490,10 @@ fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, 
     page.circle([at + 4.0, y], 1.2, colour(0), "none", 0.0);
     at += 12.0;
     word(page, &mut at, "hinge");
-    if moments.iter().any(|m| m.poses.iter().any(|p| p.1.is_some())) {
+    if moments
+        .iter()
+        .any(|m| m.poses.iter().any(|p| p.1.is_some()))
+    {
         page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
         at += 26.0;
         word(page, &mut at, "before a snap");
