@@ -235,15 +235,25 @@ fn complain(failure: &Failure) {
     let _ = match failure {
         Failure::Message(message) => writeln!(stderr, "snapfit: {message}"),
         Failure::Scene(diagnostics) => {
-            let rendering = match std::io::stderr().is_terminal() {
-                false => Rendering::Plain,
-                true if colour_on(true) => Rendering::Colour,
-                true => Rendering::Unicode,
-            };
-            let all: String = diagnostics.iter().map(|d| d.render(rendering)).collect();
+            let all: String = diagnostics.iter().map(told).collect();
             stderr.write_all(all.as_bytes())
         }
     };
+}
+
+/// A diagnostic: with a picture of the place on a terminal, else a line that tools understand.
+fn told(d: &Diagnostic) -> String {
+    if std::io::stderr().is_terminal() {
+        return d.render(if colour_on(true) {
+            Rendering::Colour
+        } else {
+            Rendering::Unicode
+        });
+    }
+    match d.advice() {
+        Some(advice) => format!("{d}\n  help: {advice}\n"),
+        None => format!("{d}\n"),
+    }
 }
 
 /// What clap makes of the arguments: help, the version, or an error.

@@ -1,10 +1,11 @@
 //! Pictures: the mechanism at its events (as in DP Fig. 4), and θ over time, as one SVG file.
 //!
 //! A picture is drawn from the scene and the finished result document, in doubles: nothing here
-//! decides anything. [`stage`](self) turns both into shapes and curves, `panels` draws the small
-//! multiples, `plot` the histories; letters tie an instant of the one to the same instant of the
+//! decides anything. `stage` turns both into shapes and curves, `panels` draws the small
+//! multiples (`names` finds room for the obstacles' names), `plot` the histories; letters tie an instant of the one to the same instant of the
 //! other.
 
+mod names;
 mod panels;
 mod plot;
 mod stage;

@@ -4,6 +4,7 @@
 //! the plane and the mechanism moves through it; if they travel far, the window travels along.
 
 use super::fit;
+use super::names::Names;
 use super::plot::nice_step;
 use super::stage::Stage;
 use super::svg::{CONTACT, INK, MUTED, Point, RULE, Svg, clipped};
@@ -36,12 +37,18 @@ pub(super) struct Moment {
     touching: Vec<Point>,
     left: Vec<Point>,
     captions: Vec<String>,
+    /// Whether the motion comes to grief here.
+    ends: bool,
 }
+
+/// The weight of what ends a motion.
+const GRIEF: u32 = 7;
 
 /// How much an event deserves a panel.
 fn weight(kind: &str) -> u32 {
     match kind {
-        "jam-incompatible" | "jam-single" | "stick" | "bifurcation" | "root-collision" => 7,
+        "jam-incompatible" | "jam-single" | "stick" | "bifurcation" => GRIEF,
+        "root-collision" => 6,
         "snap-free" | "snap-free-vertex" => 6,
         "translational-collision" | "snap-landing" => 5,
         "sliding-collision" | "release" | "limit-stop" => 4,
@@ -51,41 +58,57 @@ fn weight(kind: &str) -> u32 {
     }
 }
 
+/// Events of one instant, with the index of their pawl.
+struct Group<'a> {
+    phase: usize,
+    t: f64,
+    weight: u32,
+    events: Vec<(usize, &'a EventDocument)>,
+}
+
 /// The instants to draw, in order, lettered.
 pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
-    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> =
-        vec![(0, 0.0, 5, vec![])];
     let mut all: Vec<(usize, &EventDocument)> = Vec::new();
     for (i, pawl) in result.pawls.iter().enumerate() {
-        all.extend(pawl.events.iter().map(|e| (i, e)));
+        let drawn = pawl.events.iter().filter(|e| e.time.approx().is_finite());
+        all.extend(drawn.map(|e| (i, e)));
     }
-    all.sort_by(|a, b| {
-        let key = |e: &EventDocument| (e.phase, e.time.approx());
-        let (ka, kb) = (key(a.1), key(b.1));
-        ka.0.cmp(&kb.0).then(ka.1.total_cmp(&kb.1))
+    all.sort_by(|(_, a), (_, b)| {
+        let times = a.time.approx().total_cmp(&b.time.approx());
+        a.phase.cmp(&b.phase).then(times)
     });
+    let mut groups = vec![Group {
+        phase: 0,
+        t: 0.0,
+        weight: 5,
+        events: Vec::new(),
+    }];
     for (pawl, event) in all {
         let (phase, t) = (event.phase, event.time.approx());
-        if !t.is_finite() {
-            continue;
-        }
         match groups.last_mut() {
-            Some(g) if g.0 == phase && g.1 == t => {
-                g.2 = g.2.max(weight(event.kind));
-                g.3.push((pawl, event));
+            Some(g) if g.phase == phase && g.t == t => {
+                g.weight = g.weight.max(weight(event.kind));
+                g.events.push((pawl, event));
             }
-            _ => groups.push((phase, t, weight(event.kind), vec![(pawl, event)])),
+            _ => groups.push(Group {
+                phase,
+                t,
+                weight: weight(event.kind),
+                events: vec![(pawl, event)],
+            }),
         }
     }
-    let mut ranked: Vec<usize> = (0..groups.len()).filter(|&i| groups[i].2 > 0).collect();
-    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].2), i));
+    let mut ranked: Vec<usize> = (0..groups.len())
+        .filter(|&i| groups[i].weight > 0)
+        .collect();
+    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].weight), i));
     ranked.truncate(MOST);
     ranked.sort_unstable();
     let chosen = ranked.into_iter().enumerate();
     chosen
         .map(|(k, i)| {
-            let (phase, t, _, events) = &groups[i];
-            moment(stage, result, letter(k), (*phase, *t), events)
+            let g = &groups[i];
+            moment(stage, result, letter(k), (g.phase, g.t), &g.events)
         })
         .collect()
 }
@@ -131,6 +154,7 @@ fn moment(
         touching,
         left,
         captions: captions(result, events),
+        ends: events.iter().any(|e| weight(e.1.kind) == GRIEF),
     }
 }
 
@@ -305,25 +329,27 @@ pub(super) fn draw(
     }
     let rows = moments.len().div_ceil(columns);
     let below = y + rows as f64 * (h + CAPTION);
-    legend(page, stage, scale, [x, below + 6.0, dx]);
+    legend(page, stage, moments, scale, [x, below + 6.0, dx]);
     below + 22.0
 }
 
-/// How many columns, and how wide: about as high as a page would have it.
+/// How many columns, and how wide: a page about half as high as wide, few empty places.
 fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
-    let wide = |columns: usize| {
+    let column = |columns: usize| {
         let w = (width - (columns - 1) as f64 * GAP) / columns as f64;
-        (columns, w.min(330.0).min(330.0 * aspect.max(0.75)))
+        w.min(330.0).min(330.0 * aspect.max(0.75))
     };
-    let height = |c: usize| {
-        let rows = count.div_ceil(c) as f64;
-        rows * (wide(c).1 / aspect + CAPTION)
+    let badness = |columns: usize| {
+        let rows = count.div_ceil(columns);
+        let height = rows as f64 * (column(columns) / aspect + CAPTION);
+        let empty = (rows * columns - count) as f64 / columns as f64;
+        let blank = width - columns as f64 * (column(columns) + GAP);
+        (height - 0.5 * width).abs() + 0.3 * empty * width + 0.5 * blank
     };
-    let fits = (3..=6).min_by(|a, b| {
-        let off = |c: usize| (height(c) - 0.62 * width).abs();
-        off(*a).total_cmp(&off(*b))
-    });
-    wide(fits.unwrap_or(4).max(3))
+    let best = (3..=6)
+        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
+        .unwrap_or(4);
+    (best, column(best))
 }
 
 fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64; 4]) {
@@ -346,32 +372,39 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
         |ring: &[Point]| -> Vec<Point> { clipped(ring, beyond).into_iter().map(put).collect() };
     page.rect(rect, "#fbfcfd", "none");
     page.clip(rect);
-    for (_, rings) in &stage.obstacles {
+    let mut names = Names::new(rect);
+    for (name, rings) in &stage.obstacles {
         let rings: Vec<Vec<Point>> = rings.iter().map(|r| placed(r)).collect();
         page.shape(
             &rings,
             "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"",
         );
+        names.ask(name, rings);
     }
     let offset = stage.offset(m.phase, m.t);
     if let Some(root) = stage.root_at(offset) {
         let style = "fill=\"#eadfc4\" fill-opacity=\"0.8\" stroke=\"#8d7b4a\" stroke-width=\"1\"";
-        page.shape(&[placed(&root)], style);
+        let root = placed(&root);
+        page.shape(std::slice::from_ref(&root), style);
+        names.avoid(root);
     }
     for (i, (before, after)) in m.poses.iter().enumerate() {
         let c = colour(i);
         let now = placed(&stage.pawl_at(i, offset, after.unwrap_or(*before)));
         let style =
             format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
-        page.shape(&[now], &style);
+        page.shape(std::slice::from_ref(&now), &style);
+        names.avoid(now);
         if after.is_some() {
             let ghost = placed(&stage.pawl_at(i, offset, *before));
             let style = format!(
                 "fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\""
             );
-            page.shape(&[ghost], &style);
+            page.shape(std::slice::from_ref(&ghost), &style);
+            names.avoid(ghost);
         }
     }
+    names.write(page);
     for (i, pawl) in stage.pawls.iter().enumerate() {
         let hinge = put([pawl.hinge[0] + offset[0], pawl.hinge[1] + offset[1]]);
         page.circle(hinge, 3.6, "#ffffff", colour(i), 1.4);
@@ -384,7 +417,7 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
         page.circle(put(*p), 3.4, CONTACT, "#ffffff", 0.8);
     }
     page.end();
-    page.rect(rect, "none", RULE);
+    page.rect(rect, "none", if m.ends { CONTACT } else { RULE });
     travel(page, stage, m.phase, [px, py]);
     let head = format!("({}) t = {}", m.letter, digits(m.t, 6));
     page.text(px, py + h + 15.0, 12.0, INK, "start", true, &head);
@@ -426,7 +459,7 @@ fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
 }
 
 /// What the signs in the panels mean, and a scale.
-fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
+fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, dx]: [f64; 3]) {
     let mut at = x;
     let unit = nice_step(dx / 4.0);
     let bar = unit * scale;
@@ -448,16 +481,23 @@ fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
     page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
     at += 12.0;
     word(page, &mut at, "contact");
-    page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
-    at += 12.0;
-    word(page, &mut at, "contact lost");
+    if moments.iter().any(|m| !m.left.is_empty()) {
+        page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
+        at += 12.0;
+        word(page, &mut at, "contact lost");
+    }
     page.circle([at + 4.0, y], 3.6, "#ffffff", colour(0), 1.4);
     page.circle([at + 4.0, y], 1.2, colour(0), "none", 0.0);
     at += 12.0;
     word(page, &mut at, "hinge");
-    page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
-    at += 26.0;
-    word(page, &mut at, "before a snap");
+    if moments
+        .iter()
+        .any(|m| m.poses.iter().any(|p| p.1.is_some()))
+    {
+        page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
+        at += 26.0;
+        word(page, &mut at, "before a snap");
+    }
     page.arrow([at, y], [at + 18.0, y], INK);
     at += 24.0;
     word(page, &mut at, "motion of the root");
