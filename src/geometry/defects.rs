@@ -52,7 +52,7 @@ pub enum Defect {
         /// The other one.
         second: EdgeRef,
         /// How they meet.
-        how: Meeting,
+        how: Box<Meeting>,
     },
     /// A hole lies outside the outer ring, or reaches out of it through a vertex.
     HoleOutside {
@@ -149,7 +149,10 @@ fn edges_that_meet(polygon: &Polygon) -> Vec<Defect> {
             match how {
                 Meeting::Apart => {}
                 Meeting::Touch(_) if !same_ring => {}
-                _ => found.push(Defect::EdgesMeet { first, second, how }),
+                _ => {
+                    let how = Box::new(how);
+                    found.push(Defect::EdgesMeet { first, second, how });
+                }
             }
             if found.len() >= MAX_DEFECTS {
                 break 'sweep;

@@ -60,9 +60,10 @@ pub fn interiors_intersect(a: &Polygon, b: &Polygon) -> bool {
     if !a.bounds().meets(b.bounds()) {
         return false;
     }
-    // Where nothing else passes through the point, two edges that cross prove it at once. A hole
-    // may touch another ring just there, so only rings without holes may take this way.
-    let crossing_decides = a.rings().len() == 1 && b.rings().len() == 1;
+    // Two edges that cross inside both prove it at once if one region, say B, has no holes: round
+    // the crossing B then fills a half-disc, and A the part of the disc just beside its own edge
+    // on both sides of the crossing. Where both have holes, both may be pinched at that point.
+    let crossing_decides = a.rings().len() == 1 || b.rings().len() == 1;
     let found = walk(a, b, crossing_decides, &mut |piece| match piece {
         Piece::Inside | Piece::SameSide => ControlFlow::Break(()),
         Piece::Outside | Piece::OppositeSide => ControlFlow::Continue(()),
