@@ -1,13 +1,12 @@
 //! What the oracle's, the random and the metamorphic tests share: a plain random source,
 //! generators, scenes as text, the brute-force oracle.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used)]
 
 pub mod compare;
 pub mod follow;
 pub mod oracle;
 pub mod rng;
 pub mod scenes;
-pub mod text;
 
 /// The seed at which random tests begin: TEST_SEED, by default 1.
 pub fn first_seed() -> u64 {
