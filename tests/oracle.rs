@@ -56,7 +56,11 @@ fn random_scenes_agree_with_brute_force() {
     let mut all = Covered::default();
     let n = count(2000) as u64;
     let mut wrong = Vec::new();
-    for seed in (0..n).map(|k| world::first_seed() + k) {
+    let mut seeds: Vec<u64> = (0..n).map(|k| world::first_seed() + k).collect();
+    if let Ok(list) = std::env::var("TEST_SEEDS") {
+        seeds = list.split(',').map(|s| s.parse().unwrap()).collect();
+    }
+    for seed in seeds {
         let scene = random_scene(&Recipe::draw(seed));
         match compare(&scene, seed, 20, 150) {
             Ok(c) => all.add(&c),
@@ -65,17 +69,47 @@ fn random_scenes_agree_with_brute_force() {
     }
     eprintln!("{all:?}");
     if std::env::var("TEST_SHRINK").is_ok() {
+        let kind = |e: &str| -> String {
+            let letters = e.chars().filter(|c| c.is_alphabetic() || *c == ' ');
+            letters.collect::<String>().replace("ee", "e")
+        };
         for (seed, e, scene) in &wrong {
-            let kind: String = e.chars().take_while(|c| !c.is_ascii_digit()).collect();
-            let small = shrink(scene, &|s| {
-                compare(s, *seed, 40, 150).is_err_and(|x| {
-                    x.chars().take_while(|c| !c.is_ascii_digit()).collect::<String>() == kind
-                })
-            });
-            let e = compare(&small, *seed, 40, 150).unwrap_err();
-            eprintln!("── seed {seed}: {e}\n{}", small.to_toml());
+            let like = kind(e.split_once(": ").map_or(e, |x| x.1));
+            let again = |s: &Scene| compare(s, *seed, 40, 150).err();
+            let small = shrink(scene, &|s| again(s).is_some_and(|x| kind(&x).ends_with(&like)));
+            eprintln!("── seed {seed}: {:?}\n{}", again(&small), small.to_toml());
         }
     }
     let list: Vec<String> = wrong.iter().map(|w| format!("seed {}: {}", w.0, w.1)).collect();
     assert!(list.is_empty(), "{} of {n}:\n{}", list.len(), list.join("\n"));
+}
+
+/// One scene from the file that TEST_SCENE names, with all that brute force finds.
+#[test]
+#[ignore = "a tool: needs TEST_SCENE"]
+fn one_scene() {
+    let Ok(path) = std::env::var("TEST_SCENE") else {
+        return;
+    };
+    let text = std::fs::read_to_string(&path).unwrap();
+    let scene = read_scene(&path, &text).unwrap().into_scene();
+    let t = world::compare::engine(&scene).unwrap();
+    for p in &t.pawls {
+        for e in &p.events {
+            eprintln!(
+                "{} {:?} phase {} t {} θ {} to {:?} {:?}",
+                p.name,
+                e.kind,
+                e.phase,
+                world::compare::ft(&e.time),
+                world::oracle::radians(&e.angle),
+                e.to.as_ref().map(world::oracle::radians),
+                e.contacts
+            );
+        }
+    }
+    let o = &t.outcome;
+    eprintln!("{:?} at {} phase {} {:?}", o.kind, world::compare::ft(&o.time), o.phase, o.pawl);
+    world::compare::forecast(&scene, &t);
+    eprintln!("{:?}", compare(&scene, 1, 100, 150));
 }

@@ -408,3 +408,27 @@ fn one_phase(
     }
     Ok(())
 }
+
+/// Prints what brute force finds in each phase, each begun where the engine begins it.
+pub fn forecast(scene: &Scene, t: &Trajectory) {
+    for i in 0..t.pawls.len() {
+        for (k, phase) in t.phases.iter().enumerate() {
+            let planned = match &scene.motions[k] {
+                Motion::Translate {
+                    duration: Some(d), ..
+                } => f(d),
+                _ => ft(&phase.to),
+            };
+            let w = World::new(scene, i, &phase.offset, &phase.velocity, planned);
+            let start = if k == 0 {
+                2.0 * f(&scene.pawls[i].start).atan()
+            } else {
+                let ends = |e: &&snapfit::motion::Event| e.phase == k - 1;
+                radians(&t.pawls[i].events.iter().rfind(ends).unwrap().angle)
+            };
+            let mut out = Follower::run(&w, scene.friction.as_ref(), start, 150);
+            out.path.dedup_by(|a, b| a.0 - b.0 < planned / 400.0);
+            eprintln!("{} phase {k}: {out:?}", t.pawls[i].name);
+        }
+    }
+}

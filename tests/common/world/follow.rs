@@ -328,8 +328,10 @@ impl Follower<'_> {
             }
             1 => next.into_iter().next().unwrap(),
             _ => {
-                let held = next.iter().all(|n| n.side != 0 && n.theta.abs() < LEAP);
-                if !held {
+                // Long enough for both ways to leave rest by more than doubles blur.
+                let next = self.advance(&s, dt * 1024.0);
+                let parted = |n: &State| n.side != 0 && n.theta.abs() < LEAP;
+                if next.len() != 2 || !next.iter().all(parted) {
                     self.out.doubt = Some((s.t, "splits beside rest"));
                     return Step::Over;
                 }

@@ -279,7 +279,18 @@ pub fn shrink(scene: &Scene, fails: &dyn Fn(&Scene) -> bool) -> Scene {
         for i in 0..best.motions.len() {
             with(&|s| drop(s.motions.remove(i)));
         }
-        with(&|s| s.root = None);
+        with(&|s| {
+            s.root = None;
+            for m in &mut s.motions {
+                if let Motion::Translate {
+                    until_root_collision,
+                    ..
+                } = m
+                {
+                    *until_root_collision = false;
+                }
+            }
+        });
         with(&|s| s.friction = None);
         for i in 0..best.pawls.len() {
             with(&|s| s.pawls[i].limits = None);
