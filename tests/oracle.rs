@@ -110,6 +110,9 @@ fn one_scene() {
     }
     let o = &t.outcome;
     eprintln!("{:?} at {} phase {} {:?}", o.kind, world::compare::ft(&o.time), o.phase, o.pawl);
+    if std::env::var("TEST_ARCS").is_ok() {
+        world::compare::arcs(&scene, &t);
+    }
     world::compare::forecast(&scene, &t);
     eprintln!("{:?}", compare(&scene, 1, 100, 150));
 }

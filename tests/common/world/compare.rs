@@ -278,14 +278,15 @@ fn course(
         let mut theta = 2.0 * f(&scene.pawls[i].start).atan();
         for (k, phase) in t.phases.iter().enumerate() {
             let last = k + 1 == t.phases.len();
+            let mine = last && t.outcome.pawl == Some(i);
             let cut = ft(&phase.to);
             // Beyond the engine's own end, where the plan goes on, so that its end is put to test.
             let planned = match &scene.motions[k] {
                 Motion::Translate {
                     duration: Some(d),
-                    until_root_collision: false,
+                    until_root_collision,
                     ..
-                } => f(d),
+                } if !until_root_collision || last && mine => f(d),
                 Motion::Reverse => ft(&t.phases[k - 1].to),
                 _ => cut,
             };
@@ -296,7 +297,6 @@ fn course(
             let forecast = Follower::run(&w, scene.friction.as_ref(), theta, steps);
             covered.phases += 1;
             covered.steps += forecast.path.len();
-            let mine = last && t.outcome.pawl == Some(i);
             one_phase(t, i, k, cut, mine, planned, &forecast, covered)
                 .map_err(|e| format!("{} in phase {k}: {e}", pawl.name))?;
             if forecast.doubt.is_some() {
@@ -429,6 +429,38 @@ pub fn forecast(scene: &Scene, t: &Trajectory) {
             let mut out = Follower::run(&w, scene.friction.as_ref(), start, 150);
             out.path.dedup_by(|a, b| a.0 - b.0 < planned / 400.0);
             eprintln!("{} phase {k}: {out:?}", t.pawls[i].name);
+        }
+    }
+}
+
+/// Prints the engine's arcs.
+pub fn arcs(scene: &Scene, t: &Trajectory) {
+    use snapfit::contact::{Frame, ObstacleShape, PawlShape};
+    let obstacles: Vec<ObstacleShape> = scene.obstacles.iter().map(ObstacleShape::new).collect();
+    for pawl in &scene.pawls {
+        for phase in &t.phases {
+            let frame = Frame {
+                p0: &pawl.hinge + &phase.offset,
+                v: phase.velocity.clone(),
+                duration: Rat::from(20),
+            };
+            let shape = PawlShape::new(pawl);
+            let slice = snapfit::slice::Slice::new(frame, &shape, &obstacles, pawl.limits.as_ref());
+            for a in slice.arcs() {
+                let x = |e: &snapfit::slice::End| e.x.nearest_f64().unwrap();
+                eprintln!(
+                    "{} {:?} x {}..{} t {}..{} {:?} {:?} {:?}",
+                    pawl.name,
+                    a.chart,
+                    x(&a.lo),
+                    x(&a.hi),
+                    ft(&a.lo.t),
+                    ft(&a.hi.t),
+                    a.shape,
+                    a.side,
+                    a.contact
+                );
+            }
         }
     }
 }

@@ -100,32 +100,43 @@ impl Follower<'_> {
     fn start(&mut self, theta0: f64) -> Option<State> {
         let w = self.w;
         let h = w.duration * SHORTEST;
-        // Free gaps whose closure holds θ₀, just after the start.
-        let mut found: Vec<(f64, f64)> = Vec::new();
-        for d in [0.0, 1e-5, -1e-5, 3e-7, -3e-7, 1e-4, -1e-4] {
-            if let Some(i) = self.interval(h, theta0 + d)
-                && i.0 <= theta0 + 1e-6
-                && i.1 >= theta0 - 1e-6
-                && !found.iter().any(|k| (k.0 - i.0).abs() < 1e-9 || k.0 == i.0)
-            {
-                found.push(i);
+        // Free gaps whose closure holds θ₀, just after the start; an end may have run as far as
+        // the root of the time that has passed.
+        let reach = |me: &Self, h: f64| {
+            let mut found: Vec<(f64, f64)> = Vec::new();
+            for d in [0.0, 1e-5, -1e-5, 3e-7, -3e-7, 1e-4, -1e-4, 1e-3, -1e-3] {
+                if let Some(i) = me.interval(h, theta0 + d)
+                    && i.0 <= theta0 + LEAP / 2.0
+                    && i.1 >= theta0 - LEAP / 2.0
+                    && !found.iter().any(|k| (k.0 - i.0).abs() < 1e-9 || k.0 == i.0)
+                {
+                    found.push(i);
+                }
             }
-        }
+            found
+        };
+        let found = reach(self, h);
         if found.len() > 1 {
-            if theta0.abs() < 1e-6 {
-                // Rest at the end of both: on a corner, or at a slit.
-                self.out.end = Some((How::Bifurcated, 0.0));
-                self.out.doubt = Some((0.0, "starts between two intervals"));
-                return None;
+            let later: Vec<State> = reach(self, 1e3 * h)
+                .into_iter()
+                .map(|i| self.clamp(1e3 * h, i.0, i.1))
+                .collect();
+            let both = later.len() == 2 && later[0].side * later[1].side < 0;
+            if theta0.abs() < 1e-6 && both {
+                let stuck: Vec<_> = later.iter().map(|s| self.sticks(s)).collect();
+                if self.mu.is_none() || stuck.iter().all(Option::is_some) {
+                    let held = stuck.iter().all(|x| *x == Some(true));
+                    let how = if held { How::Stuck } else { How::Bifurcated };
+                    self.out.end = Some((how, 0.0));
+                    return None;
+                }
             }
             self.out.doubt = Some((0.0, "starts between two intervals"));
             return None;
         }
         let Some(&(lo, hi)) = found.first() else {
-            // Nothing within 1e-5: closed, or a cusp too narrow to see.
             self.out.end = Some((How::Jammed, 0.0));
-            let near = [1e-3, -1e-3, 1e-2, -1e-2];
-            if near.iter().any(|d| self.interval(h, theta0 + d).is_some()) {
+            if [1e2, 1e4, 1e6].iter().any(|k| !reach(self, k * h).is_empty()) {
                 self.out.doubt = Some((0.0, "a narrow start"));
             }
             return None;
