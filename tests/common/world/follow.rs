@@ -121,6 +121,13 @@ impl Follower<'_> {
                 .into_iter()
                 .map(|i| self.clamp(1e3 * h, i.0, i.1))
                 .collect();
+            // Rest itself stays free: it never was struck.
+            if theta0 == 0.0
+                && let Some(s) = later.iter().find(|s| s.side == 0)
+            {
+                self.out.path.push((s.t, 0.0));
+                return Some(s.clone());
+            }
             let both = later.len() == 2 && later[0].side * later[1].side < 0;
             if theta0.abs() < 1e-6 && both {
                 let stuck: Vec<_> = later.iter().map(|s| self.sticks(s)).collect();
