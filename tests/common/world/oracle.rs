@@ -166,7 +166,7 @@ impl World {
             let len = dot(along, along).sqrt();
             let n = [along[1] / len, -along[0] / len];
             let (radius, d) = (dot(x, x).sqrt(), dot(l0, n));
-            if radius <= slack || d.abs() > radius + slack {
+            if radius <= 1e-12 * self.size || d.abs() > radius + slack {
                 return;
             }
             let spread = (d / radius).clamp(-1.0, 1.0).acos();
