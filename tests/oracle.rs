@@ -91,8 +91,15 @@ fn one_scene() {
     let Ok(path) = std::env::var("TEST_SCENE") else {
         return;
     };
-    let text = std::fs::read_to_string(&path).unwrap();
-    let scene = read_scene(&path, &text).unwrap().into_scene();
+    // A file, or a seed.
+    let scene = match path.parse() {
+        Ok(seed) => random_scene(&Recipe::draw(seed)),
+        Err(_) => {
+            let text = std::fs::read_to_string(&path).unwrap();
+            read_scene(&path, &text).unwrap().into_scene()
+        }
+    };
+    eprintln!("{}", scene.to_toml());
     let t = world::compare::engine(&scene).unwrap();
     for p in &t.pawls {
         for e in &p.events {

@@ -299,7 +299,10 @@ fn course(
             covered.steps += forecast.path.len();
             one_phase(t, i, k, cut, mine, planned, &forecast, covered)
                 .map_err(|e| format!("{} in phase {k}: {e}", pawl.name))?;
-            if forecast.doubt.is_some() {
+            if let Some(doubt) = forecast.doubt {
+                if std::env::var("TEST_DOUBTS").is_ok() {
+                    eprintln!("doubt: {}: {}: {doubt:?}", scene.name, pawl.name);
+                }
                 covered.doubts += 1;
                 continue 'pawls;
             }

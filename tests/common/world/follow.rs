@@ -304,10 +304,10 @@ impl Follower<'_> {
         if s.side == 0 {
             return Some(false);
         }
-        let mut verdicts = s
-            .held
-            .iter()
-            .map(|c| self.w.balance(s.t, s.theta, *c, mu).map(|g| g < -1e-9));
+        let mut verdicts = s.held.iter().map(|c| match c {
+            Contact::Limit(_) => Some(false),
+            _ => self.w.balance(s.t, s.theta, *c, mu).map(|g| g < -1e-9),
+        });
         let first = verdicts.next()??;
         verdicts.all(|v| v == Some(first)).then_some(first)
     }
@@ -348,7 +348,7 @@ impl Follower<'_> {
             _ => {
                 // Long enough for both ways to leave rest by more than doubles blur.
                 let next = self.advance(&s, dt * 1024.0);
-                let parted = |n: &State| n.side != 0 && n.theta.abs() < LEAP;
+                let parted = |n: &State| n.side != 0 && n.theta.abs() < 10.0 * LEAP;
                 if next.len() != 2 || !next.iter().all(parted) {
                     self.out.doubt = Some((s.t, "splits beside rest"));
                     return Step::Over;
@@ -369,7 +369,8 @@ impl Follower<'_> {
         if (n.theta - s.theta).abs() > LEAP {
             let away = n.theta.abs() > s.theta.abs() && n.theta * s.theta >= 0.0;
             if away {
-                self.out.doubt = Some((s.t, "the near end leaps away from rest"));
+                // What is left of the interval lies past the state: a jam, never a move away.
+                self.out.end = Some((How::Jammed, at));
                 return Step::Over;
             }
             self.out.snaps.push(Leap {
@@ -380,7 +381,12 @@ impl Follower<'_> {
         }
         self.out.path.push((n.t, n.theta));
         if self.mu.is_some() {
-            match self.sticks(&n) {
+            // At a vertex two contacts touch: what counts is the one that is followed next.
+            let after = || {
+                let later = self.advance(&n, dt * 1024.0);
+                later.first().and_then(|m| self.sticks(m))
+            };
+            match self.sticks(&n).or_else(after) {
                 Some(true) => {
                     self.out.end = Some((How::Stuck, at));
                     return Step::Over;
