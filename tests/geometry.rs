@@ -1,6 +1,7 @@
 //! Geometry against slow ways that share nothing with it: regions as sets of unit cells, the
 //! plane cut into vertical slabs, all pairs of edges by solving their equations.
 
+#[allow(unreachable_pub, reason = "a test file is a crate of its own")]
 mod common;
 
 use common::count;
@@ -356,6 +357,12 @@ fn area_and_corners_agree_with_cells() {
             let filled = a.filled.iter().filter(|f| **f).count() as i64;
             prop_assert_eq!(a.polygon.twice_area(), Rat::from(2 * filled));
             let mapped = map.polygon(&a.polygon);
+            for r in 0..a.polygon.rings().len() {
+                for q in [&a.polygon, &mapped] {
+                    let area = q.twice_signed_area(r);
+                    prop_assert_eq!(q.is_counter_clockwise(r), area.sign() > 0);
+                }
+            }
             let mut turns = 0;
             for (r, vertices) in a.polygon.rings().iter().enumerate() {
                 for k in 0..vertices.len() {
@@ -395,6 +402,10 @@ fn simplicity_agrees_with_all_pairs() {
             let found = defects(&Polygon::new(r.clone(), vec![]));
             prop_assert_eq!(found.is_empty(), simple_by_pairs(&r), "{:?}", found);
             prop_assert!(found.len() <= MAX_DEFECTS);
+            if found.is_empty() {
+                let q = Polygon::new(r, vec![]);
+                prop_assert_eq!(q.is_counter_clockwise(0), q.twice_signed_area(0).sign() > 0);
+            }
             Ok(())
         })
         .unwrap();

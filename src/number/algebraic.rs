@@ -74,7 +74,11 @@ impl Span {
     fn from_doubles(x: Interval) -> Span {
         let ((m, a), (n, b)) = (decompose(x.lo), decompose(x.hi));
         let e = 0.max(-a).max(-b);
-        Span { lo: Int::from(m).shl((a + e) as u64), hi: Int::from(n).shl((b + e) as u64), e: e as u64 }
+        Span {
+            lo: Int::from(m).shl((a + e) as u64),
+            hi: Int::from(n).shl((b + e) as u64),
+            e: e as u64,
+        }
     }
     fn common(&self, o: &Span) -> Option<Span> {
         let e = self.e.max(o.e);
@@ -91,8 +95,15 @@ impl Span {
 
 /// A bound 2^b > |p'(x)| for |x| ≤ 2^size.
 fn slope_bits(p: &Poly, size: i64) -> i64 {
-    let terms = p.coeffs().iter().enumerate().skip(1).filter(|(_, c)| !c.is_zero());
-    let most = terms.map(|(i, c)| c.bits() as i64 + bit_length(i) + size * (i as i64 - 1)).max();
+    let terms = p
+        .coeffs()
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter(|(_, c)| !c.is_zero());
+    let most = terms
+        .map(|(i, c)| c.bits() as i64 + bit_length(i) + size * (i as i64 - 1))
+        .max();
     most.unwrap_or(0) + bit_length(p.coeffs().len())
 }
 fn bit_length(n: usize) -> i64 {
@@ -101,14 +112,25 @@ fn bit_length(n: usize) -> i64 {
 
 impl Root {
     fn new(poly: Arc<Poly>, span: Span, sign_lo: i32, enclosure: OnceLock<Interval>) -> Root {
-        Root { poly, span, sign_lo, enclosure, rational: OnceLock::new(), minimal: OnceLock::new() }
+        Root {
+            poly,
+            span,
+            sign_lo,
+            enclosure,
+            rational: OnceLock::new(),
+            minimal: OnceLock::new(),
+        }
     }
 
     /// The cell of the grid of step 2^-bits that holds the root. Cost: a few evaluations at numbers of about
     /// `bits` bits.
     fn cell(&self, bits: u64) -> Cell {
         let p = &*self.poly;
-        let Span { mut lo, mut hi, mut e } = self.span.clone();
+        let Span {
+            mut lo,
+            mut hi,
+            mut e,
+        } = self.span.clone();
         // Every step keeps hi − lo = width in units of 2^-e.
         let width = &hi - &lo;
         let w = width.bits();
@@ -132,9 +154,17 @@ impl Root {
                 let below = s == self.sign_lo;
                 // The other end of the cell of the finer grid that the secant points at.
                 let y = if below { &x + &width } else { &x - &width };
-                let last = if below { j + Int::one() == Int::one().shl(t) } else { j.is_one() };
+                let last = if below {
+                    j + Int::one() == Int::one().shl(t)
+                } else {
+                    j.is_one()
+                };
                 let at_y = if last {
-                    if below { at_hi.shl(t * n) } else { at_lo.shl(t * n) }
+                    if below {
+                        at_hi.shl(t * n)
+                    } else {
+                        at_lo.shl(t * n)
+                    }
                 } else {
                     p.eval_dyadic(&y, e + t)
                 };
@@ -147,7 +177,11 @@ impl Root {
                     t /= 2;
                     continue;
                 }
-                (lo, hi, at_lo, at_hi) = if below { (x, y, at_x, at_y) } else { (y, x, at_y, at_x) };
+                (lo, hi, at_lo, at_hi) = if below {
+                    (x, y, at_x, at_y)
+                } else {
+                    (y, x, at_y, at_x)
+                };
                 e += t;
                 t *= 2;
             }
@@ -186,9 +220,17 @@ impl Root {
                 if known >= 58 || bits >= 1140 {
                     let e = -(bits as i64);
                     let hi = Rat::dyadic(&k + Int::one(), e).interval().hi;
-                    return Interval { lo: Rat::dyadic(k, e).interval().lo, hi };
+                    return Interval {
+                        lo: Rat::dyadic(k, e).interval().lo,
+                        hi,
+                    };
                 }
-                bits = if known < 2 { 2 * bits + 64 } else { bits + 60 - known }.min(1140);
+                bits = if known < 2 {
+                    2 * bits + 64
+                } else {
+                    bits + 60 - known
+                }
+                .min(1140);
             }
         })
     }
@@ -228,7 +270,12 @@ impl Algebraic {
                 let sign_lo = if (count - i) % 2 == 1 { -1 } else { 1 };
                 debug_assert_eq!(p.sign_at_dyadic(&lo, e), sign_lo);
                 debug_assert_eq!(p.sign_at_dyadic(&hi, e), -sign_lo);
-                Algebraic(RootOf(Arc::new(Root::new(p.clone(), Span { lo, hi, e }, sign_lo, OnceLock::new()))))
+                Algebraic(RootOf(Arc::new(Root::new(
+                    p.clone(),
+                    Span { lo, hi, e },
+                    sign_lo,
+                    OnceLock::new(),
+                ))))
             }
         };
         found.into_iter().enumerate().map(make).collect()
@@ -238,7 +285,14 @@ impl Algebraic {
     pub(crate) fn pair(p: Poly, x: Interval, y: Interval) -> Vec<Algebraic> {
         let p = Arc::new(p);
         [(x, 1), (y, -1)]
-            .map(|(i, s)| Algebraic(RootOf(Arc::new(Root::new(p.clone(), Span::from_doubles(i), s, OnceLock::from(i))))))
+            .map(|(i, s)| {
+                Algebraic(RootOf(Arc::new(Root::new(
+                    p.clone(),
+                    Span::from_doubles(i),
+                    s,
+                    OnceLock::from(i),
+                ))))
+            })
             .into()
     }
     /// The exact rational value where the number is rational (decided, not guessed; the answer is kept).
@@ -424,24 +478,38 @@ impl Algebraic {
             .collect();
         let roots = interpolate(&points).real_roots();
         let mut bits = self.grid(64) as u64;
-        select(roots, || loop {
-            let k = match root.cell(bits) {
-                Cell::Exact(r) => {
-                    let v = num.eval(&r) / den.eval(&r);
-                    return (v.clone(), v);
+        select(roots, || {
+            loop {
+                let k = match root.cell(bits) {
+                    Cell::Exact(r) => {
+                        let v = num.eval(&r) / den.eval(&r);
+                        return (v.clone(), v);
+                    }
+                    Cell::Between(k) => k,
+                };
+                let ((n, en), (d, ed)) =
+                    (value_on_cell(num, &k, bits), value_on_cell(den, &k, bits));
+                let (n, en) = (
+                    Rat::dyadic(n, -scale_of(num, bits)),
+                    Rat::dyadic(en, -scale_of(num, bits)),
+                );
+                let (d, ed) = (
+                    Rat::dyadic(d, -scale_of(den, bits)),
+                    Rat::dyadic(ed, -scale_of(den, bits)),
+                );
+                bits = 2 * bits + 32;
+                if d.abs() > ed {
+                    let quotients = [
+                        (&n - &en, &d - &ed),
+                        (&n - &en, &d + &ed),
+                        (&n + &en, &d - &ed),
+                        (&n + &en, &d + &ed),
+                    ];
+                    let mut q = quotients.map(|(a, b)| a / b);
+                    q.sort();
+                    let [lo, _, _, hi] = q;
+                    return (lo, hi);
                 }
-                Cell::Between(k) => k,
-            };
-            let ((n, en), (d, ed)) = (value_on_cell(num, &k, bits), value_on_cell(den, &k, bits));
-            let (n, en) = (Rat::dyadic(n, -scale_of(num, bits)), Rat::dyadic(en, -scale_of(num, bits)));
-            let (d, ed) = (Rat::dyadic(d, -scale_of(den, bits)), Rat::dyadic(ed, -scale_of(den, bits)));
-            bits = 2 * bits + 32;
-            if d.abs() > ed {
-                let quotients = [(&n - &en, &d - &ed), (&n - &en, &d + &ed), (&n + &en, &d - &ed), (&n + &en, &d + &ed)];
-                let mut q = quotients.map(|(a, b)| a / b);
-                q.sort();
-                let [lo, _, _, hi] = q;
-                return (lo, hi);
             }
         })
     }
@@ -476,7 +544,12 @@ impl Algebraic {
     ///
     /// # Panics
     /// If p + self·q is the zero polynomial, or no root lies in the enclosures.
-    pub fn root_over(&self, p: &Poly, q: &Poly, locate: &mut dyn FnMut(u32) -> (Rat, Rat)) -> Algebraic {
+    pub fn root_over(
+        &self,
+        p: &Poly,
+        q: &Poly,
+        locate: &mut dyn FnMut(u32) -> (Rat, Rat),
+    ) -> Algebraic {
         let over = |m: &Poly| {
             // Π over the roots t of m of (p + t·q), up to a constant: q^n·m(−p/q).
             let minus_p = -p;
@@ -529,7 +602,8 @@ impl Root {
                 let m = (lead * k).shr(bits) + Int::one();
                 let r = Rat::new(m, lead.clone());
                 let e = -(self.span.e as i64);
-                let inside = Rat::dyadic(self.span.lo.clone(), e) < r && r < Rat::dyadic(self.span.hi.clone(), e);
+                let inside = Rat::dyadic(self.span.lo.clone(), e) < r
+                    && r < Rat::dyadic(self.span.hi.clone(), e);
                 (inside && self.poly.sign_at(&r) == 0).then_some(r)
             })
             .as_ref()
@@ -576,10 +650,20 @@ fn scale_of(p: &Poly, bits: u64) -> i64 {
 /// (v, err): on the cell k of the grid 2^-bits the value of p, times 2^(bits·degree), is v ± err.
 fn value_on_cell(p: &Poly, k: &Int, bits: u64) -> (Int, Int) {
     let value = p.eval_dyadic(k, bits);
+    if p.coeffs().len() <= 1 {
+        return (value, Int::zero());
+    }
     let size = k.bits() as i64 + 1 - bits as i64;
     // |p(x) − p(k/2^b)| ≤ |p'|·2^-b
     let error = slope_bits(p, size) - bits as i64 + scale_of(p, bits);
-    (value, if error >= 0 { Int::one().shl(error as u64) } else { Int::one() })
+    (
+        value,
+        if error >= 0 {
+            Int::one().shl(error as u64)
+        } else {
+            Int::one()
+        },
+    )
 }
 
 /// The polynomial through the points (Newton), up to a positive factor.
@@ -624,7 +708,11 @@ fn separating_grid(a: &Algebraic, b: &Algebraic) -> u64 {
             let (mut least, mut most) = (0, bits);
             while least < most {
                 let j = least.midpoint(most);
-                if x.shr(bits - j) != y.shr(bits - j) { most = j } else { least = j + 1 }
+                if x.shr(bits - j) != y.shr(bits - j) {
+                    most = j
+                } else {
+                    least = j + 1
+                }
             }
             return most;
         }
@@ -644,14 +732,18 @@ impl PartialEq for Algebraic {
             (Rational(a), Rational(b)) => a.value == b.value,
             (Rational(a), _) => o.cmp_rat(&a.value).is_eq(),
             (_, Rational(b)) => self.cmp_rat(&b.value).is_eq(),
-            (RootOf(a), RootOf(b)) => Arc::ptr_eq(a, b) || a.enclosure().meets(&b.enclosure()) && a.equals(b),
+            (RootOf(a), RootOf(b)) => {
+                Arc::ptr_eq(a, b) || a.enclosure().meets(&b.enclosure()) && a.equals(b)
+            }
         }
     }
 }
 impl Root {
     /// Equality, decided without refinement.
     fn equals(&self, o: &Root) -> bool {
-        let Some(common) = self.span.common(&o.span) else { return false };
+        let Some(common) = self.span.common(&o.span) else {
+            return false;
+        };
         if Arc::ptr_eq(&self.poly, &o.poly) || self.poly == o.poly {
             // Ends of either interval are no roots, and each holds but one.
             return common.changes_sign(&self.poly);

@@ -41,7 +41,12 @@ fn quadratic(p: Poly, out: &mut Vec<Poly>) {
 
 /// Trial primes: odd, in ascending order.
 fn primes() -> impl Iterator<Item = u64> {
-    (3..1u64 << 30).step_by(2).filter(|&n| (3..).step_by(2).take_while(|d| d * d <= n).all(|d| n % d != 0))
+    (3..1u64 << 30).step_by(2).filter(|&n| {
+        (3..)
+            .step_by(2)
+            .take_while(|d| d * d <= n)
+            .all(|d| n % d != 0)
+    })
 }
 
 /// The set of sums of the degrees, as bits; exact for degrees below 128.
@@ -64,7 +69,9 @@ fn zassenhaus(p: Poly, out: &mut Vec<Poly>) {
             continue;
         }
         let parts = field.distinct_degrees(&field.monic(f));
-        let degrees = parts.iter().flat_map(|(g, d)| std::iter::repeat_n(*d, (g.len() - 1) / d));
+        let degrees = parts
+            .iter()
+            .flat_map(|(g, d)| std::iter::repeat_n(*d, (g.len() - 1) / d));
         let count = degrees.clone().count();
         if n < 128 {
             allowed &= degree_sums(degrees);
@@ -90,7 +97,10 @@ fn zassenhaus(p: Poly, out: &mut Vec<Poly>) {
         return;
     };
     let field = Field { p: prime };
-    let factors: Vec<Residues> = parts.into_iter().flat_map(|(g, d)| field.equal_degree(g, d)).collect();
+    let factors: Vec<Residues> = parts
+        .into_iter()
+        .flat_map(|(g, d)| field.equal_degree(g, d))
+        .collect();
     let (lifted, modulus) = lift(&p, factors, field);
     recombine(p, lifted, &modulus, allowed, out);
 }
@@ -110,10 +120,20 @@ fn mul(a: &[Int], b: &[Int], m: &Int) -> Mods {
     reduce((a * b).coeffs().to_vec(), m)
 }
 fn add(a: &[Int], b: &[Int], m: &Int) -> Mods {
-    reduce((Poly::new(a.to_vec()) + Poly::new(b.to_vec())).coeffs().to_vec(), m)
+    reduce(
+        (Poly::new(a.to_vec()) + Poly::new(b.to_vec()))
+            .coeffs()
+            .to_vec(),
+        m,
+    )
 }
 fn sub(a: &[Int], b: &[Int], m: &Int) -> Mods {
-    reduce((Poly::new(a.to_vec()) - Poly::new(b.to_vec())).coeffs().to_vec(), m)
+    reduce(
+        (Poly::new(a.to_vec()) - Poly::new(b.to_vec()))
+            .coeffs()
+            .to_vec(),
+        m,
+    )
 }
 /// Quotient and remainder by a monic polynomial.
 fn div_rem(a: &[Int], b: &[Int], m: &Int) -> (Mods, Mods) {
@@ -158,7 +178,9 @@ fn lift(f: &Poly, factors: Vec<Residues>, field: Field) -> (Vec<Mods>, Int) {
             break;
         }
         // rest = g·h with h monic and g carrying the leading coefficient.
-        let g = factors[i + 1..].iter().fold(vec![lead.mod_u64(field.p)], |acc, x| field.mul(&acc, x));
+        let g = factors[i + 1..]
+            .iter()
+            .fold(vec![lead.mod_u64(field.p)], |acc, x| field.mul(&acc, x));
         let (s, t) = field.bezout(&g, h);
         let (mut g, mut h) = (lift_residues(&g), lift_residues(h));
         let (mut s, mut t) = (lift_residues(&s), lift_residues(&t));
@@ -170,7 +192,11 @@ fn lift(f: &Poly, factors: Vec<Residues>, field: Field) -> (Vec<Mods>, Int) {
             let (q, r) = div_rem(&mul(&s, &e, &m), &h, &m);
             let g2 = add(&g, &add(&mul(&t, &e, &m), &mul(&q, &g, &m), &m), &m);
             let h2 = add(&h, &r, &m);
-            let b = sub(&add(&mul(&s, &g2, &m), &mul(&t, &h2, &m), &m), &[Int::one()], &m);
+            let b = sub(
+                &add(&mul(&s, &g2, &m), &mul(&t, &h2, &m), &m),
+                &[Int::one()],
+                &m,
+            );
             let (c, d) = div_rem(&mul(&s, &b, &m), &h2, &m);
             let t2 = sub(&t, &add(&mul(&t, &b, &m), &mul(&c, &g2, &m), &m), &m);
             s = sub(&s, &d, &m);
@@ -232,7 +258,9 @@ fn recombine(mut f: Poly, mut parts: Vec<Mods>, m: &Int, allowed: u128, out: &mu
 /// The next choice of as many indices below n, in lexicographic order; false at the end.
 fn next_choice(pick: &mut [usize], n: usize) -> bool {
     let k = pick.len();
-    let Some(i) = (0..k).rev().find(|&i| pick[i] < n - k + i) else { return false };
+    let Some(i) = (0..k).rev().find(|&i| pick[i] < n - k + i) else {
+        return false;
+    };
     pick[i] += 1;
     for j in i + 1..k {
         pick[j] = pick[j - 1] + 1;
@@ -241,18 +269,28 @@ fn next_choice(pick: &mut [usize], n: usize) -> bool {
 }
 
 /// The true factor that a choice of lifted factors stands for, and its cofactor.
-fn try_product(f: &Poly, parts: &[Mods], pick: &[usize], m: &Int, allowed: u128) -> Option<(Poly, Poly)> {
+fn try_product(
+    f: &Poly,
+    parts: &[Mods],
+    pick: &[usize],
+    m: &Int,
+    allowed: u128,
+) -> Option<(Poly, Poly)> {
     let degree: usize = pick.iter().map(|&i| parts[i].len() - 1).sum();
     if degree < 128 && allowed >> degree & 1 == 0 {
         return None;
     }
     let lead = f.leading()?;
     // The constant term first: it divides lc·f(0), and that fails for nearly every wrong choice.
-    let constant = pick.iter().fold(lead.clone(), |acc, &i| symmetric(acc * &parts[i][0], m));
+    let constant = pick
+        .iter()
+        .fold(lead.clone(), |acc, &i| symmetric(acc * &parts[i][0], m));
     if constant.is_zero() || !(lead * f.coeff(0)).div_rem_floor(&constant).1.is_zero() {
         return None;
     }
-    let product = pick.iter().fold(vec![lead.clone()], |acc, &i| mul(&acc, &parts[i], m));
+    let product = pick
+        .iter()
+        .fold(vec![lead.clone()], |acc, &i| mul(&acc, &parts[i], m));
     let g = Poly::new(product.into_iter().map(|c| symmetric(c, m)).collect()).primitive();
     let rest = f.div_exact(&g)?.primitive();
     Some((g, rest))

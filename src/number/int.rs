@@ -116,7 +116,10 @@ fn trim(l: &mut Vec<u64>) {
 
 /// Whether a < b, both trimmed.
 fn limbs_less(a: &[u64], b: &[u64]) -> bool {
-    a.len().cmp(&b.len()).then_with(|| a.iter().rev().cmp(b.iter().rev())) == Ordering::Less
+    a.len()
+        .cmp(&b.len())
+        .then_with(|| a.iter().rev().cmp(b.iter().rev()))
+        == Ordering::Less
 }
 
 /// Lehmer's gcd (Knuth, TAOCP 2, algorithm 4.5.2 L): Euclid's quotients are found on the leading 62
@@ -132,7 +135,11 @@ fn gcd_limbs(mut a: Vec<u64>, mut b: Vec<u64>) -> BigUint {
             return from_limbs(&a);
         }
         if a.len() <= 2 {
-            let word = |l: &[u64]| l.iter().rev().fold(0u128, |acc, &d| (acc << 64) | d as u128);
+            let word = |l: &[u64]| {
+                l.iter()
+                    .rev()
+                    .fold(0u128, |acc, &d| (acc << 64) | d as u128)
+            };
             return BigUint::from(gcd_u128(word(&a), word(&b)));
         }
         let n = a.len();
@@ -227,7 +234,11 @@ impl Int {
     }
     /// Absolute value.
     pub fn abs(&self) -> Int {
-        if self.sign() < 0 { self.negated() } else { self.clone() }
+        if self.sign() < 0 {
+            self.negated()
+        } else {
+            self.clone()
+        }
     }
     /// Greatest common divisor, non-negative; gcd(0, 0) = 0. Quadratic in the number of words.
     pub fn gcd(&self, other: &Int) -> Int {
@@ -251,7 +262,10 @@ impl Int {
                     return Int::one();
                 }
                 let r = if a >> 64 == 0 { b % (a as u64) } else { b % a };
-                let r = r.abs().to_u128().expect("a remainder is less than the divisor");
+                let r = r
+                    .abs()
+                    .to_u128()
+                    .expect("a remainder is less than the divisor");
                 Int::from_u128(gcd_u128(a, r))
             }
             (Big(a), Big(b)) => canonical(BigInt::from(gcd_limbs(limbs(a), limbs(b)))),
@@ -303,7 +317,11 @@ impl Int {
                 } else {
                     (a / b, a % b)
                 };
-                if r != 0 && (r < 0) != (*b < 0) { (Int(Small(q - 1)), Int(Small(r + b))) } else { (Int(Small(q)), Int(Small(r))) }
+                if r != 0 && (r < 0) != (*b < 0) {
+                    (Int(Small(q - 1)), Int(Small(r + b)))
+                } else {
+                    (Int(Small(q)), Int(Small(r)))
+                }
             }
             _ => {
                 let (q, r) = self.to_big().div_mod_floor(&d.to_big());
@@ -357,7 +375,11 @@ impl Int {
     pub fn sqrt(&self) -> Option<Int> {
         match &self.0 {
             Small(v) if *v < 0 => None,
-            Small(v) => Some(Int(Small(if *v >> 64 == 0 { (*v as u64).isqrt() as i128 } else { v.isqrt() }))),
+            Small(v) => Some(Int(Small(if *v >> 64 == 0 {
+                (*v as u64).isqrt() as i128
+            } else {
+                v.isqrt()
+            }))),
             Big(b) if b.is_negative() => None,
             Big(b) => Some(canonical(b.sqrt())),
         }
@@ -404,7 +426,9 @@ impl Int {
             Small(v) if narrow(*v) && m >> 63 == 0 => (*v as i64).rem_euclid(m as i64) as u64,
             Small(v) => v.rem_euclid(m as i128) as u64,
             Big(b) => {
-                let r = (b.magnitude() % m).to_u64().expect("a remainder is less than the modulus");
+                let r = (b.magnitude() % m)
+                    .to_u64()
+                    .expect("a remainder is less than the modulus");
                 if b.is_negative() && r != 0 { m - r } else { r }
             }
         }
@@ -584,9 +608,13 @@ impl std::str::FromStr for Int {
             return Err(format!("not an integer: {s:?}"));
         }
         if s.len() <= 38 {
-            return s.parse::<i128>().map(|v| Int(Small(v))).map_err(|e| e.to_string());
+            return s
+                .parse::<i128>()
+                .map(|v| Int(Small(v)))
+                .map_err(|e| e.to_string());
         }
-        let v = BigUint::parse_bytes(digits.as_bytes(), 10).ok_or_else(|| format!("not an integer: {s:?}"))?;
+        let v = BigUint::parse_bytes(digits.as_bytes(), 10)
+            .ok_or_else(|| format!("not an integer: {s:?}"))?;
         let v = BigInt::from(v);
         Ok(canonical(if s.starts_with('-') { -v } else { v }))
     }
@@ -671,7 +699,11 @@ mod tests {
 
     #[test]
     fn size_stays_two_registers_and_a_tag() {
-        assert!(std::mem::size_of::<Int>() <= 48, "{}", std::mem::size_of::<Int>());
+        assert!(
+            std::mem::size_of::<Int>() <= 48,
+            "{}",
+            std::mem::size_of::<Int>()
+        );
     }
 
     #[test]
@@ -684,14 +716,26 @@ mod tests {
         assert_eq!(-&Int::from(i128::MIN), over);
         assert_eq!(Int::from(i128::MIN).abs(), over);
         assert_eq!(Int::from(i128::MIN).div_exact(&Int::from(-1i64)), over);
-        assert_eq!(Int::from(i128::MIN).div_rem_floor(&Int::from(-1i64)), (over.clone(), Int::zero()));
-        assert_eq!(Int::from(i64::MIN).div_exact(&Int::from(-1i64)), -Int::from(i64::MIN));
-        assert_eq!(Int::from(i64::MIN).div_rem_floor(&Int::from(-1i64)).0, -Int::from(i64::MIN));
+        assert_eq!(
+            Int::from(i128::MIN).div_rem_floor(&Int::from(-1i64)),
+            (over.clone(), Int::zero())
+        );
+        assert_eq!(
+            Int::from(i64::MIN).div_exact(&Int::from(-1i64)),
+            -Int::from(i64::MIN)
+        );
+        assert_eq!(
+            Int::from(i64::MIN).div_rem_floor(&Int::from(-1i64)).0,
+            -Int::from(i64::MIN)
+        );
         assert_eq!(Int::from(i128::MIN).bits(), 128);
         assert_eq!(Int::one().shl(127), over);
         assert_eq!((-Int::one()).shl(127), Int::from(i128::MIN));
         assert_eq!((-Int::one()).shl(200).shr(201), -Int::one());
-        assert_eq!((-(Int::one().shl(200) + Int::one())).shr(200), Int::from(-2i64));
+        assert_eq!(
+            (-(Int::one().shl(200) + Int::one())).shr(200),
+            Int::from(-2i64)
+        );
         assert!(Int::from(i128::MIN) < max && max < over && -&over.shl(1) < Int::from(i128::MIN));
     }
 
@@ -699,7 +743,10 @@ mod tests {
     fn gcds_of_all_sizes() {
         let g = Int::from(600_851_475_143i64);
         for k in [1u32, 3, 8, 20] {
-            let (a, b) = (&g.pow(k) * &Int::from(7i64).pow(90), &g.pow(k) * &Int::from(-5i64).pow(81));
+            let (a, b) = (
+                &g.pow(k) * &Int::from(7i64).pow(90),
+                &g.pow(k) * &Int::from(-5i64).pow(81),
+            );
             assert_eq!(a.gcd(&b), g.pow(k), "{k}");
         }
         assert_eq!(Int::zero().gcd(&Int::from(i128::MIN)), Int::one().shl(127));
@@ -725,7 +772,10 @@ mod tests {
             assert!(bad.parse::<Int>().is_err(), "{bad:?}");
         }
         let nines = "9".repeat(60);
-        assert_eq!(format!("-{nines}").parse::<Int>().map(|v| v.to_string()), Ok(format!("-{nines}")));
+        assert_eq!(
+            format!("-{nines}").parse::<Int>().map(|v| v.to_string()),
+            Ok(format!("-{nines}"))
+        );
         assert_eq!("+07".parse::<Int>(), Ok(Int::from(7i64)));
     }
 }

@@ -23,12 +23,20 @@ pub struct Interval {
 fn sum_down(a: f64, b: f64) -> f64 {
     let (s, e) = two_sum(a, b);
     // A NaN error (overflow on the way) counts as inexact.
-    if e >= 0.0 && e < f64::INFINITY && s < f64::INFINITY { s } else { s.next_down() }
+    if e >= 0.0 && e < f64::INFINITY && s < f64::INFINITY {
+        s
+    } else {
+        s.next_down()
+    }
 }
 #[inline]
 fn sum_up(a: f64, b: f64) -> f64 {
     let (s, e) = two_sum(a, b);
-    if e <= 0.0 && e > f64::NEG_INFINITY && s > f64::NEG_INFINITY { s } else { s.next_up() }
+    if e <= 0.0 && e > f64::NEG_INFINITY && s > f64::NEG_INFINITY {
+        s
+    } else {
+        s.next_up()
+    }
 }
 #[inline]
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
@@ -40,11 +48,19 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
 /// a·b with the convention of unbounded sets: zero times an infinite end is zero.
 #[inline]
 fn prod_down(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { (a * b).next_down() }
+    if a == 0.0 || b == 0.0 {
+        0.0
+    } else {
+        (a * b).next_down()
+    }
 }
 #[inline]
 fn prod_up(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { (a * b).next_up() }
+    if a == 0.0 || b == 0.0 {
+        0.0
+    } else {
+        (a * b).next_up()
+    }
 }
 
 impl Interval {
@@ -57,12 +73,19 @@ impl Interval {
     /// The whole line.
     #[inline]
     pub fn all() -> Interval {
-        Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY }
+        Interval {
+            lo: f64::NEG_INFINITY,
+            hi: f64::INFINITY,
+        }
     }
     /// The ends as given, or the whole line where they are no interval.
     #[inline]
     fn guard(lo: f64, hi: f64) -> Interval {
-        if lo <= hi { Interval { lo, hi } } else { Interval::all() }
+        if lo <= hi {
+            Interval { lo, hi }
+        } else {
+            Interval::all()
+        }
     }
     /// The sign that holds throughout, None if undecided. Some(0) only for the point zero.
     #[inline]
@@ -125,7 +148,11 @@ impl Interval {
             0.0
         } else {
             let s = self.lo.sqrt();
-            if exact(s, self.lo) { s } else { s.next_down().max(0.0) }
+            if exact(s, self.lo) {
+                s
+            } else {
+                s.next_down().max(0.0)
+            }
         };
         let hi = if self.hi == 0.0 {
             0.0
@@ -152,7 +179,11 @@ impl Interval {
 
 /// 2^k for −1074 ≤ k ≤ 1023.
 pub(crate) fn pow2(k: i32) -> f64 {
-    if k >= -1022 { f64::from_bits(((k + 1023) as u64) << 52) } else { f64::from_bits(1 << (k + 1074)) }
+    if k >= -1022 {
+        f64::from_bits(((k + 1023) as u64) << 52)
+    } else {
+        f64::from_bits(1 << (k + 1074))
+    }
 }
 
 impl Add for Interval {
@@ -201,7 +232,10 @@ impl Mul for Interval {
         if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
             return Interval::all();
         }
-        Interval::guard(prod_down(a, d).min(prod_down(b, c)), prod_up(a, c).max(prod_up(b, d)))
+        Interval::guard(
+            prod_down(a, d).min(prod_down(b, c)),
+            prod_up(a, c).max(prod_up(b, d)),
+        )
     }
 }
 /// The whole line where the divisor holds zero.
@@ -213,19 +247,45 @@ impl Div for Interval {
             return Interval::all();
         }
         // A negative divisor turns both signs.
-        let (n, c, d) = if negative { (-self, -o.hi, -o.lo) } else { (self, o.lo, o.hi) };
+        let (n, c, d) = if negative {
+            (-self, -o.hi, -o.lo)
+        } else {
+            (self, o.lo, o.hi)
+        };
         // x/∞ stands for the values x/y with y as large as you like: its limit is 0.
-        let quot = |x: f64, y: f64| if x == 0.0 || y.is_infinite() { 0.0 } else { x / y };
+        let quot = |x: f64, y: f64| {
+            if x == 0.0 || y.is_infinite() {
+                0.0
+            } else {
+                x / y
+            }
+        };
         let down = |x: f64, y: f64| {
             let q = quot(x, y);
-            if q == 0.0 && (x >= 0.0 || y.is_infinite()) { 0.0 } else { q.next_down() }
+            if q == 0.0 && (x >= 0.0 || y.is_infinite()) {
+                0.0
+            } else {
+                q.next_down()
+            }
         };
         let up = |x: f64, y: f64| {
             let q = quot(x, y);
-            if q == 0.0 && (x <= 0.0 || y.is_infinite()) { 0.0 } else { q.next_up() }
+            if q == 0.0 && (x <= 0.0 || y.is_infinite()) {
+                0.0
+            } else {
+                q.next_up()
+            }
         };
-        let lo = if n.lo >= 0.0 { down(n.lo, d) } else { down(n.lo, c) };
-        let hi = if n.hi >= 0.0 { up(n.hi, c) } else { up(n.hi, d) };
+        let lo = if n.lo >= 0.0 {
+            down(n.lo, d)
+        } else {
+            down(n.lo, c)
+        };
+        let hi = if n.hi >= 0.0 {
+            up(n.hi, c)
+        } else {
+            up(n.hi, d)
+        };
         Interval::guard(lo, hi)
     }
 }
@@ -233,6 +293,9 @@ impl Neg for Interval {
     type Output = Interval;
     #[inline]
     fn neg(self) -> Interval {
-        Interval { lo: -self.hi, hi: -self.lo }
+        Interval {
+            lo: -self.hi,
+            hi: -self.lo,
+        }
     }
 }

@@ -47,8 +47,14 @@ fn bernstein(c: &[Int]) -> Vec<Int> {
         let next = (&row[j] * Int::from((n - j) as i64)).div_exact(&Int::from(j as i64 + 1));
         row.push(next);
     }
-    let lcm = row.iter().fold(Int::one(), |l, b| &l * b.div_exact(&l.gcd(b)));
-    let scaled: Vec<Int> = c.iter().zip(&row).map(|(c, b)| c * lcm.div_exact(b)).collect();
+    let lcm = row
+        .iter()
+        .fold(Int::one(), |l, b| &l * b.div_exact(&l.gcd(b)));
+    let scaled: Vec<Int> = c
+        .iter()
+        .zip(&row)
+        .map(|(c, b)| c * lcm.div_exact(b))
+        .collect();
     // b_i = Σ_j C(i, j)·scaled_j: repeated sums, as in Pascal's triangle.
     let mut b = scaled;
     for i in 1..=n {
@@ -120,8 +126,17 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) {
     let n = c.len() - 1;
     let k = root_bound(c);
     // x = 2^k·u with u in (0, 1), scaled to integers.
-    let scaled: Vec<Int> =
-        c.iter().enumerate().map(|(i, v)| v.shl(if k >= 0 { k * i as i64 } else { -k * (n - i) as i64 } as u64)).collect();
+    let scaled: Vec<Int> = c
+        .iter()
+        .enumerate()
+        .map(|(i, v)| {
+            v.shl(if k >= 0 {
+                k * i as i64
+            } else {
+                -k * (n - i) as i64
+            } as u64)
+        })
+        .collect();
     enum Step {
         Piece(Vec<Int>, Int, i64),
         Met(Rat),
@@ -144,9 +159,17 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) {
                 let e = depth - k;
                 let next = &at + Int::one();
                 out.push(if e >= 0 {
-                    Isolated::Open { lo: at, hi: next, e: e as u64 }
+                    Isolated::Open {
+                        lo: at,
+                        hi: next,
+                        e: e as u64,
+                    }
                 } else {
-                    Isolated::Open { lo: at.shl(e.unsigned_abs()), hi: next.shl(e.unsigned_abs()), e: 0 }
+                    Isolated::Open {
+                        lo: at.shl(e.unsigned_abs()),
+                        hi: next.shl(e.unsigned_abs()),
+                        e: 0,
+                    }
                 });
                 continue;
             }
@@ -155,7 +178,9 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) {
         }
         let (left, right) = halve(&b);
         let middle = at.shl(1) + Int::one();
-        let met = right[0].is_zero().then(|| Rat::dyadic(middle.clone(), k - depth - 1));
+        let met = right[0]
+            .is_zero()
+            .then(|| Rat::dyadic(middle.clone(), k - depth - 1));
         stack.push(Step::Piece(right, middle, depth + 1));
         stack.extend(met.map(Step::Met));
         stack.push(Step::Piece(left, at.shl(1), depth + 1));
@@ -171,7 +196,11 @@ pub(crate) fn isolate(p: &Poly) -> Vec<Isolated> {
     }
     let mut out = Vec::new();
     if c.len() > 1 {
-        let mirrored: Vec<Int> = c.iter().enumerate().map(|(i, v)| if i % 2 == 1 { -v } else { v.clone() }).collect();
+        let mirrored: Vec<Int> = c
+            .iter()
+            .enumerate()
+            .map(|(i, v)| if i % 2 == 1 { -v } else { v.clone() })
+            .collect();
         positive(&mirrored, &mut out);
         out.reverse();
         for r in &mut out {

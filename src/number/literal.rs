@@ -25,11 +25,16 @@ impl fmt::Display for LiteralError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             LiteralError::Malformed => {
-                write!(f, "not a number (expected digits[.digits][e[+-]digits] or integer/integer)")
+                write!(
+                    f,
+                    "not a number (expected digits[.digits][e[+-]digits] or integer/integer)"
+                )
             }
             LiteralError::BadDenominator => write!(f, "the denominator must be positive"),
             LiteralError::TooManyDigits => write!(f, "more than {MAX_DIGITS} digits in one number"),
-            LiteralError::ExponentTooLarge => write!(f, "the exponent is larger than {MAX_EXPONENT} in size"),
+            LiteralError::ExponentTooLarge => {
+                write!(f, "the exponent is larger than {MAX_EXPONENT} in size")
+            }
         }
     }
 }
@@ -51,7 +56,9 @@ fn value(s: &str) -> Result<Int, LiteralError> {
         return Err(LiteralError::Malformed);
     }
     if s.len() <= 18 {
-        return Ok(Int::from(s.bytes().fold(0i64, |v, c| v * 10 + (c - b'0') as i64)));
+        return Ok(Int::from(
+            s.bytes().fold(0i64, |v, c| v * 10 + (c - b'0') as i64),
+        ));
     }
     s.parse().map_err(|_| LiteralError::Malformed)
 }
@@ -67,7 +74,11 @@ pub fn parse(text: &str) -> Result<Rat, LiteralError> {
     if whole.is_empty() {
         return Err(LiteralError::Malformed);
     }
-    let size = if let Some(den) = rest.strip_prefix('/') { fraction(whole, den)? } else { decimal(whole, rest)? };
+    let size = if let Some(den) = rest.strip_prefix('/') {
+        fraction(whole, den)?
+    } else {
+        decimal(whole, rest)?
+    };
     Ok(if text.starts_with('-') { -size } else { size })
 }
 
@@ -106,7 +117,11 @@ fn decimal(whole: &str, rest: &str) -> Result<Rat, LiteralError> {
             }
             // Leading zeros are harmless; more than six digits are past the limit anyway.
             let d = d.trim_start_matches('0');
-            let size = if d.len() > 6 { i64::MAX } else { d.bytes().fold(0, |v, c| v * 10 + (c - b'0') as i64) };
+            let size = if d.len() > 6 {
+                i64::MAX
+            } else {
+                d.bytes().fold(0, |v, c| v * 10 + (c - b'0') as i64)
+            };
             if size > MAX_EXPONENT {
                 return Err(LiteralError::ExponentTooLarge);
             }

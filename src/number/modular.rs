@@ -29,7 +29,11 @@ fn residue(v: &Int) -> u64 {
         acc = reduce(acc as u128 + r as u128 * weight as u128);
         weight = mul(weight, 8);
     });
-    if v.sign() < 0 && acc != 0 { P - acc } else { acc }
+    if v.sign() < 0 && acc != 0 {
+        P - acc
+    } else {
+        acc
+    }
 }
 
 /// The degree of the gcd modulo 2^61 − 1: an upper bound of the degree of the true gcd. None where both
@@ -131,7 +135,9 @@ impl Field {
     pub(crate) fn sub(&self, a: &[u64], b: &[u64]) -> Residues {
         let n = a.len().max(b.len());
         let at = |v: &[u64], i: usize| v.get(i).copied().unwrap_or(0);
-        let mut r = (0..n).map(|i| (at(a, i) + self.p - at(b, i)) % self.p).collect();
+        let mut r = (0..n)
+            .map(|i| (at(a, i) + self.p - at(b, i)) % self.p)
+            .collect();
         trim(&mut r);
         r
     }
@@ -150,7 +156,9 @@ impl Field {
     /// Quotient and remainder; `b` not zero.
     pub(crate) fn div_rem(&self, a: &[u64], b: &[u64]) -> (Residues, Residues) {
         let mut r = a.to_vec();
-        let Some(&l) = b.last() else { return (Vec::new(), r) };
+        let Some(&l) = b.last() else {
+            return (Vec::new(), r);
+        };
         if a.len() < b.len() {
             return (Vec::new(), r);
         }
@@ -194,7 +202,12 @@ impl Field {
         (scale(s0), scale(t0))
     }
     pub(crate) fn derivative(&self, f: &[u64]) -> Residues {
-        let mut r = f.iter().enumerate().skip(1).map(|(i, c)| i as u64 % self.p * c % self.p).collect();
+        let mut r = f
+            .iter()
+            .enumerate()
+            .skip(1)
+            .map(|(i, c)| i as u64 % self.p * c % self.p)
+            .collect();
         trim(&mut r);
         r
     }
@@ -247,7 +260,9 @@ impl Field {
             }
             let mut a: Residues = (0..n)
                 .map(|_| {
-                    seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    seed = seed
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1_442_695_040_888_963_407);
                     (seed >> 33) % self.p
                 })
                 .collect();

@@ -52,7 +52,12 @@ impl Poly {
         if lcm.is_one() {
             return Poly::new(coeffs.iter().map(|c| c.numer().clone()).collect());
         }
-        Poly::new(coeffs.iter().map(|c| c.numer() * lcm.div_exact(c.denom())).collect())
+        Poly::new(
+            coeffs
+                .iter()
+                .map(|c| c.numer() * lcm.div_exact(c.denom()))
+                .collect(),
+        )
     }
     /// The zero polynomial.
     pub fn zero() -> Poly {
@@ -87,7 +92,9 @@ impl Poly {
     }
     /// Exact value.
     pub fn eval(&self, x: &Rat) -> Rat {
-        let Some(n) = self.degree() else { return Rat::zero() };
+        let Some(n) = self.degree() else {
+            return Rat::zero();
+        };
         if x.is_integer() {
             return Rat::from(self.eval_homogeneous(x));
         }
@@ -95,7 +102,10 @@ impl Poly {
     }
     /// Exact value at an integer.
     pub fn eval_int(&self, x: &Int) -> Int {
-        self.coeffs.iter().rev().fold(Int::zero(), |acc, c| acc * x + c)
+        self.coeffs
+            .iter()
+            .rev()
+            .fold(Int::zero(), |acc, c| acc * x + c)
     }
     /// The value at num/den, times den^degree: no fraction on the way.
     fn eval_homogeneous(&self, x: &Rat) -> Int {
@@ -136,12 +146,22 @@ impl Poly {
     /// Enclosure of the range over an interval.
     pub fn eval_interval(&self, x: Interval) -> Interval {
         let mut terms = self.coeffs.iter().rev();
-        let Some(first) = terms.next() else { return Interval::point(0.0) };
+        let Some(first) = terms.next() else {
+            return Interval::point(0.0);
+        };
         terms.fold(first.interval(), |acc, c| acc * x + c.interval())
     }
     /// Derivative.
     pub fn derivative(&self) -> Poly {
-        Poly { coeffs: self.coeffs.iter().enumerate().skip(1).map(|(i, c)| c * Int::from(i as i64)).collect() }
+        Poly {
+            coeffs: self
+                .coeffs
+                .iter()
+                .enumerate()
+                .skip(1)
+                .map(|(i, c)| c * Int::from(i as i64))
+                .collect(),
+        }
     }
     /// Non-negative gcd of the coefficients.
     pub fn content(&self) -> Int {
@@ -166,14 +186,18 @@ impl Poly {
     }
     /// Every coefficient divided by a common divisor.
     fn unscale(&self, g: &Int) -> Poly {
-        Poly { coeffs: self.coeffs.iter().map(|c| c.div_exact(g)).collect() }
+        Poly {
+            coeffs: self.coeffs.iter().map(|c| c.div_exact(g)).collect(),
+        }
     }
     /// Multiplied by an integer.
     pub fn scale(&self, c: &Int) -> Poly {
         if c.is_zero() {
             return Poly::zero();
         }
-        Poly { coeffs: self.coeffs.iter().map(|x| x * c).collect() }
+        Poly {
+            coeffs: self.coeffs.iter().map(|x| x * c).collect(),
+        }
     }
     /// Exact quotient, None if `d` does not divide self over the rationals (or is zero); the quotient is
     /// returned up to a positive rational factor that makes it integral.
@@ -217,7 +241,11 @@ impl Poly {
         if bound == Some(0) || self.coeffs.len() == 1 || other.coeffs.len() == 1 {
             return Poly::constant(Int::one());
         }
-        let (a, b) = if self.coeffs.len() >= other.coeffs.len() { (self, other) } else { (other, self) };
+        let (a, b) = if self.coeffs.len() >= other.coeffs.len() {
+            (self, other)
+        } else {
+            (other, self)
+        };
         let (a, b) = (a.primitive(), b.primitive());
         // The smaller one divides the larger: the usual reason for a bound this high.
         if bound.is_none_or(|d| Some(d) == b.degree()) && a.div_exact(&b).is_some() {
@@ -227,7 +255,9 @@ impl Poly {
     }
     /// Remainder of lc(d)^(n−m+1)·self by d, for n ≥ m.
     fn pseudo_rem(&self, d: &Poly) -> Poly {
-        let (Some(n), Some(m), Some(lead)) = (self.degree(), d.degree(), d.leading()) else { return self.clone() };
+        let (Some(n), Some(m), Some(lead)) = (self.degree(), d.degree(), d.leading()) else {
+            return self.clone();
+        };
         let mut r = self.coeffs.clone();
         for k in (0..=n - m).rev() {
             let c = r[k + m].clone();
@@ -256,7 +286,9 @@ impl Poly {
     }
     /// Resultant: lc(self)^deg(other) · Π other(root of self). Zero if either is zero.
     pub(crate) fn resultant(&self, other: &Poly) -> Int {
-        let (Some(n), Some(m)) = (self.degree(), other.degree()) else { return Int::zero() };
+        let (Some(n), Some(m)) = (self.degree(), other.degree()) else {
+            return Int::zero();
+        };
         let (mut a, mut b, mut sign) = (self.clone(), other.clone(), 1);
         if n < m {
             std::mem::swap(&mut a, &mut b);
@@ -272,7 +304,11 @@ impl Poly {
             if db == 0 {
                 // h^(1−da)·lead^da
                 let p = lead.pow(da as u32);
-                let r = if da == 0 { p * h } else { p.div_exact(&h.pow(da as u32 - 1)) };
+                let r = if da == 0 {
+                    p * h
+                } else {
+                    p.div_exact(&h.pow(da as u32 - 1))
+                };
                 return if sign < 0 { -r } else { r };
             }
             if da % 2 == 1 && db % 2 == 1 {
@@ -287,7 +323,11 @@ impl Poly {
             a = b;
             b = r.unscale(&divisor);
             g = lead;
-            h = if delta == 0 { h } else { g.pow(delta).div_exact(&h.pow(delta - 1)) };
+            h = if delta == 0 {
+                h
+            } else {
+                g.pow(delta).div_exact(&h.pow(delta - 1))
+            };
         }
     }
     /// Irreducible primitive factors over the rationals (without multiplicity), ascending by degree and
@@ -305,7 +345,10 @@ impl Poly {
     /// # Panics
     /// On the zero polynomial, which every number is a root of.
     pub fn real_roots(&self) -> Vec<Algebraic> {
-        assert!(!self.is_zero(), "every number is a root of the zero polynomial");
+        assert!(
+            !self.is_zero(),
+            "every number is a root of the zero polynomial"
+        );
         match &self.coeffs[..] {
             [_] => Vec::new(),
             [c, b] => vec![Algebraic::from(Rat::new(-c, b.clone()))],
@@ -330,7 +373,11 @@ impl Poly {
         roots
     }
     fn plus(&self, o: &Poly) -> Poly {
-        let (long, short) = if self.coeffs.len() >= o.coeffs.len() { (self, o) } else { (o, self) };
+        let (long, short) = if self.coeffs.len() >= o.coeffs.len() {
+            (self, o)
+        } else {
+            (o, self)
+        };
         let mut c = long.coeffs.clone();
         for (x, y) in c.iter_mut().zip(&short.coeffs) {
             *x += y;
@@ -360,7 +407,9 @@ impl Poly {
         Poly::new(c)
     }
     fn negated(&self) -> Poly {
-        Poly { coeffs: self.coeffs.iter().map(|c| -c).collect() }
+        Poly {
+            coeffs: self.coeffs.iter().map(|c| -c).collect(),
+        }
     }
 }
 
@@ -380,7 +429,11 @@ fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
         g = b.coeffs[b.coeffs.len() - 1].clone();
         a = b;
         b = r.unscale(&divisor);
-        h = if delta == 0 { h } else { g.pow(delta).div_exact(&h.pow(delta - 1)) };
+        h = if delta == 0 {
+            h
+        } else {
+            g.pow(delta).div_exact(&h.pow(delta - 1))
+        };
     }
 }
 
@@ -395,20 +448,30 @@ fn quadratic_roots(a: &Int, b: &Int, c: &Int) -> Vec<Algebraic> {
         _ => {
             if let Some(s) = d.sqrt_exact() {
                 let (x, y) = (Rat::new(-b - &s, two_a.clone()), Rat::new(&s - b, two_a));
-                return if x < y { vec![x.into(), y.into()] } else { vec![y.into(), x.into()] };
+                return if x < y {
+                    vec![x.into(), y.into()]
+                } else {
+                    vec![y.into(), x.into()]
+                };
             }
             // The enclosures of both roots, written so that nothing cancels.
-            let (ia, ib, ic, s) = (a.interval(), b.interval(), c.interval(), d.interval().sqrt());
+            let (ia, ib, ic, s) = (
+                a.interval(),
+                b.interval(),
+                c.interval(),
+                d.interval().sqrt(),
+            );
             let positive = b.sign() >= 0;
             let q = if positive { -(ib + s) } else { s - ib };
-            let half = Interval::point(0.5);
-            let q = q * half;
-            let (mut x, mut y) = (q / ia, ic / q);
+            let (mut x, mut y) = (q / (ia + ia), (ic + ic) / q);
             // x is the root nearer −∞ where a and b agree in sign.
             if positive != (a.sign() > 0) {
                 std::mem::swap(&mut x, &mut y);
             }
-            let p = Poly { coeffs: vec![c.clone(), b.clone(), a.clone()] }.primitive();
+            let p = Poly {
+                coeffs: vec![c.clone(), b.clone(), a.clone()],
+            }
+            .primitive();
             if x.below(&y) && x.is_finite() && y.is_finite() {
                 // Doubles are rational and the roots are not: each enclosure holds one root, in its interior.
                 return Algebraic::pair(p, x, y);
@@ -426,7 +489,13 @@ impl fmt::Display for Poly {
             return f.write_str("0");
         }
         let mut first = true;
-        for (i, c) in self.coeffs.iter().enumerate().rev().filter(|(_, c)| !c.is_zero()) {
+        for (i, c) in self
+            .coeffs
+            .iter()
+            .enumerate()
+            .rev()
+            .filter(|(_, c)| !c.is_zero())
+        {
             match (first, c.sign() < 0) {
                 (true, true) => f.write_str("-")?,
                 (true, false) => {}

@@ -51,19 +51,29 @@ impl Rat {
     /// If `den` is zero.
     pub fn new(num: Int, den: Int) -> Rat {
         assert!(!den.is_zero(), "a rational with denominator zero");
-        let (num, den) = if den.sign() < 0 { (-num, -den) } else { (num, den) };
+        let (num, den) = if den.sign() < 0 {
+            (-num, -den)
+        } else {
+            (num, den)
+        };
         if den.is_one() {
             return raw(num, den);
         }
         let g = num.gcd(&den);
-        if g.is_one() { raw(num, den) } else { raw(num.div_exact(&g), den.div_exact(&g)) }
+        if g.is_one() {
+            raw(num, den)
+        } else {
+            raw(num.div_exact(&g), den.div_exact(&g))
+        }
     }
     /// m·2^e in lowest terms.
     pub(crate) fn dyadic(m: Int, e: i64) -> Rat {
         if e >= 0 {
             return Rat::from(m.shl(e as u64));
         }
-        let Some(z) = m.trailing_zeros() else { return Rat::zero() };
+        let Some(z) = m.trailing_zeros() else {
+            return Rat::zero();
+        };
         let k = z.min(e.unsigned_abs());
         raw(m.shr(k), Int::one().shl(e.unsigned_abs() - k))
     }
@@ -115,7 +125,11 @@ impl Rat {
     /// If self is zero.
     pub fn recip(&self) -> Rat {
         assert!(!self.is_zero(), "the reciprocal of zero");
-        if self.sign() < 0 { raw(-&self.den, -&self.num) } else { raw(self.den.clone(), self.num.clone()) }
+        if self.sign() < 0 {
+            raw(-&self.den, -&self.num)
+        } else {
+            raw(self.den.clone(), self.num.clone())
+        }
     }
     /// Absolute value.
     pub fn abs(&self) -> Rat {
@@ -131,11 +145,19 @@ impl Rat {
     }
     /// Largest integer ≤ self.
     pub fn floor(&self) -> Int {
-        if self.is_integer() { self.num.clone() } else { self.num.div_rem_floor(&self.den).0 }
+        if self.is_integer() {
+            self.num.clone()
+        } else {
+            self.num.div_rem_floor(&self.den).0
+        }
     }
     /// Smallest integer ≥ self.
     pub fn ceil(&self) -> Int {
-        if self.is_integer() { self.num.clone() } else { self.num.div_rem_floor(&self.den).0 + Int::one() }
+        if self.is_integer() {
+            self.num.clone()
+        } else {
+            self.num.div_rem_floor(&self.den).0 + Int::one()
+        }
     }
     /// (a+b)/2.
     pub fn midpoint(a: &Rat, b: &Rat) -> Rat {
@@ -204,8 +226,14 @@ impl Rat {
     pub fn interval(&self) -> Interval {
         if let Some((q, r)) = self.quotient() {
             return match r.partial_cmp(&0.0) {
-                Some(Ordering::Greater) => Interval { lo: q, hi: q.next_up() },
-                Some(Ordering::Less) => Interval { lo: q.next_down(), hi: q },
+                Some(Ordering::Greater) => Interval {
+                    lo: q,
+                    hi: q.next_up(),
+                },
+                Some(Ordering::Less) => Interval {
+                    lo: q.next_down(),
+                    hi: q,
+                },
                 _ => Interval::point(q + 0.0),
             };
         }
@@ -241,7 +269,11 @@ impl Rat {
         }
         let s = 63 - (self.num.bits() as i64 - self.den.bits() as i64);
         let n = self.num.abs();
-        let (n, d) = if s >= 0 { (n.shl(s as u64), self.den.clone()) } else { (n, self.den.shl(s.unsigned_abs())) };
+        let (n, d) = if s >= 0 {
+            (n.shl(s as u64), self.den.clone())
+        } else {
+            (n, self.den.shl(s.unsigned_abs()))
+        };
         let (q, r) = n.div_rem_floor(&d);
         let (top, shift, _) = q.top64();
         debug_assert!(shift == 0);
@@ -265,7 +297,10 @@ impl Rat {
         let join = |x: Int, y: Int| if subtract { x - y } else { x + y };
         let g = self.den.gcd(&o.den);
         if g.is_one() {
-            return raw(join(&self.num * &o.den, &o.num * &self.den), &self.den * &o.den);
+            return raw(
+                join(&self.num * &o.den, &o.num * &self.den),
+                &self.den * &o.den,
+            );
         }
         let (b, d) = (self.den.div_exact(&g), o.den.div_exact(&g));
         let t = join(&self.num * &d, &o.num * &b);
@@ -283,7 +318,11 @@ impl Rat {
         }
         let reduce = |n: &Int, d: &Int| {
             let g = n.gcd(d);
-            if g.is_one() { (n.clone(), d.clone()) } else { (n.div_exact(&g), d.div_exact(&g)) }
+            if g.is_one() {
+                (n.clone(), d.clone())
+            } else {
+                (n.div_exact(&g), d.div_exact(&g))
+            }
         };
         let (a, d) = reduce(&self.num, &o.den);
         let (c, b) = reduce(&o.num, &self.den);
@@ -313,18 +352,33 @@ fn sum_words(a: i64, b: i64, c: i64, d: i64) -> Rat {
     if b == 1 && d == 1 {
         return raw(Int::from(a + c), Int::one());
     }
-    let g = if b == d { b as u64 } else { gcd_u64(b as u64, d as u64) };
+    let g = if b == d {
+        b as u64
+    } else {
+        gcd_u64(b as u64, d as u64)
+    };
     if g == 1 {
-        return raw(Int::from(a as i128 * d as i128 + c as i128 * b as i128), Int::from(b as i128 * d as i128));
+        return raw(
+            Int::from(a as i128 * d as i128 + c as i128 * b as i128),
+            Int::from(b as i128 * d as i128),
+        );
     }
     let (b, e) = (b / g as i64, d / g as i64);
     let t = a as i128 * e as i128 + c as i128 * b as i128;
-    let rest = if t as i64 as i128 == t { (t as i64).unsigned_abs() % g } else { (t.unsigned_abs() % g as u128) as u64 };
+    let rest = if t as i64 as i128 == t {
+        (t as i64).unsigned_abs() % g
+    } else {
+        (t.unsigned_abs() % g as u128) as u64
+    };
     let h = gcd_u64(rest, g);
     if h == 1 {
         return raw(Int::from(t), Int::from(b as i128 * d as i128));
     }
-    let t = if t as i64 as i128 == t { (t as i64 / h as i64) as i128 } else { t / h as i128 };
+    let t = if t as i64 as i128 == t {
+        (t as i64 / h as i64) as i128
+    } else {
+        t / h as i128
+    };
     raw(Int::from(t), Int::from(b as i128 * (d / h as i64) as i128))
 }
 
@@ -338,7 +392,10 @@ fn product_words(a: i64, b: i64, c: i64, d: i64) -> Rat {
     let h = gcd_u64(c.unsigned_abs(), b as u64) as i64;
     let (a, d) = if g == 1 { (a, d) } else { (a / g, d / g) };
     let (c, b) = if h == 1 { (c, b) } else { (c / h, b / h) };
-    raw(Int::from(a as i128 * c as i128), Int::from(b as i128 * d as i128))
+    raw(
+        Int::from(a as i128 * c as i128),
+        Int::from(b as i128 * d as i128),
+    )
 }
 
 /// Veltkamp's split into two halves of 26 bits.
@@ -358,7 +415,11 @@ pub(crate) fn decompose(x: f64) -> (i64, i64) {
     let bits = x.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i64;
     let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (m, e) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
+    let (m, e) = if exponent == 0 {
+        (fraction, -1074)
+    } else {
+        (fraction | 1 << 52, exponent - 1075)
+    };
     (if x < 0.0 { -m } else { m }, e)
 }
 
@@ -379,20 +440,39 @@ impl Rounded {
         let drop = u - e;
         if drop > 64 {
             // Below half of the least subnormal double.
-            return Rounded { m: 0, u, exact: false, up: false };
+            return Rounded {
+                m: 0,
+                u,
+                exact: false,
+                up: false,
+            };
         }
         if drop <= 0 {
             // Fewer bits than a double holds; the fraction then lies wholly below the last one.
             debug_assert!(!sticky || drop == 0);
-            return Rounded { m: q << -drop, u, exact: !sticky, up: false };
+            return Rounded {
+                m: q << -drop,
+                u,
+                exact: !sticky,
+                up: false,
+            };
         }
         let wide = q as u128;
         let (low, half) = (wide & ((1 << drop) - 1), 1u128 << (drop - 1));
         let m = (wide >> drop) as u64;
-        Rounded { m, u, exact: low == 0 && !sticky, up: low > half || low == half && (sticky || m & 1 == 1) }
+        Rounded {
+            m,
+            u,
+            exact: low == 0 && !sticky,
+            up: low > half || low == half && (sticky || m & 1 == 1),
+        }
     }
     fn value(&self, m: u64) -> f64 {
-        if self.u > 971 || self.u == 971 && m >> 53 != 0 { f64::INFINITY } else { m as f64 * pow2(self.u as i32) }
+        if self.u > 971 || self.u == 971 && m >> 53 != 0 {
+            f64::INFINITY
+        } else {
+            m as f64 * pow2(self.u as i32)
+        }
     }
     fn nearest(&self) -> Option<f64> {
         let x = self.value(self.m + self.up as u64);
@@ -400,7 +480,14 @@ impl Rounded {
     }
     fn enclosure(&self) -> Interval {
         let lo = self.value(self.m).min(f64::MAX);
-        if self.exact && self.u <= 971 { Interval::point(lo) } else { Interval { lo, hi: self.value(self.m + 1) } }
+        if self.exact && self.u <= 971 {
+            Interval::point(lo)
+        } else {
+            Interval {
+                lo,
+                hi: self.value(self.m + 1),
+            }
+        }
     }
 }
 
@@ -418,7 +505,10 @@ impl Int {
             return Interval::point(v as f64);
         }
         let (q, shift, sticky) = self.top64();
-        signed(self.sign(), Rounded::new(q, sticky, shift as i64).enclosure())
+        signed(
+            self.sign(),
+            Rounded::new(q, sticky, shift as i64).enclosure(),
+        )
     }
 }
 
@@ -441,14 +531,23 @@ impl Ord for Rat {
         if self.den == o.den {
             return self.num.cmp(&o.num);
         }
-        if let (Some(a), Some(b), Some(c), Some(d)) = (self.num.to_i64(), self.den.to_i64(), o.num.to_i64(), o.den.to_i64()) {
+        if let (Some(a), Some(b), Some(c), Some(d)) = (
+            self.num.to_i64(),
+            self.den.to_i64(),
+            o.num.to_i64(),
+            o.den.to_i64(),
+        ) {
             return (a as i128 * d as i128).cmp(&(c as i128 * b as i128));
         }
         // |n|/d lies in (2^(k−1), 2^(k+1)) for k the difference of the bit counts.
         let k = |r: &Rat| r.num.bits() as i64 - r.den.bits() as i64;
         let (ka, kb) = (k(self), k(o));
         if (ka - kb).abs() >= 2 {
-            return if (ka < kb) == (self.sign() > 0) { Ordering::Less } else { Ordering::Greater };
+            return if (ka < kb) == (self.sign() > 0) {
+                Ordering::Less
+            } else {
+                Ordering::Greater
+            };
         }
         (&self.num * &o.den).cmp(&(&o.num * &self.den))
     }
@@ -487,7 +586,11 @@ impl std::str::FromStr for Rat {
 /// `n` or `n/d`.
 impl fmt::Display for Rat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_integer() { write!(f, "{}", self.num) } else { write!(f, "{}/{}", self.num, self.den) }
+        if self.is_integer() {
+            write!(f, "{}", self.num)
+        } else {
+            write!(f, "{}/{}", self.num, self.den)
+        }
     }
 }
 impl fmt::Debug for Rat {

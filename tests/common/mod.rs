@@ -1,11 +1,10 @@
-//! What several test files share.
+//! How many random cases a test runs.
 
-/// How often a random test runs: its nominal count times `TEST_MULT` (default 0.01), at least
-/// once. `TEST_MULT=1` is the full strength.
+/// The nominal count times the environment variable TEST_MULT (by default 1/100), at least one.
 pub fn count(nominal: usize) -> usize {
-    let mult = std::env::var("TEST_MULT")
+    let factor = std::env::var("TEST_MULT")
         .ok()
-        .and_then(|text| text.parse::<f64>().ok())
+        .and_then(|v| v.parse::<f64>().ok())
         .unwrap_or(0.01);
-    ((nominal as f64 * mult) as usize).max(1)
+    ((nominal as f64 * factor) as usize).max(1)
 }
