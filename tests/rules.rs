@@ -477,6 +477,21 @@ fn a_tangency_at_the_last_instant_belongs_to_the_next_phase() {
     );
 }
 
+/// There a reverse goes back the way it came: at t = 2 the hinge is 4 up again, u = −3/4.
+#[test]
+fn a_reverse_at_a_tangency_goes_back_the_way_it_came() {
+    on_floor(
+        "pawl p at 0,4: 0,0 3,-4 5/2,-5/2; start -3/4
+         move 0,1 for 1
+         reverse",
+    )
+    .events(
+        "1 | -1/3 | phase-end
+         2 | -3/4 | phase-end
+         2 | -3/4 | plan-end",
+    );
+}
+
 /// `stick_type_b` with a phase that ends on the ray, t = 1.
 #[test]
 fn a_stick_at_the_last_instant_belongs_to_the_next_phase() {
