@@ -1,5 +1,7 @@
 //! The result document against the contract: its shape, its numbers, its order.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use serde_json::Value;
 use snapfit::motion::{Options, simulate};
 use snapfit::number::{Algebraic, Int, Poly, Rat};
