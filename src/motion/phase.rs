@@ -1,7 +1,7 @@
 //! One pawl through one phase: the simple algorithm (DP §9, "Simple Algorithm").
 //!
 //! The state is at rest or on an arc. Find the next time at which anything touches it, look at
-//! the place ([`super::local`]), go on. Each step costs O(n) box tests and few exact ones.
+//! the place (the module `local`), go on. Each step costs O(n) box tests and few exact ones.
 
 use super::friction::stick_time;
 use super::local::{
