@@ -77,7 +77,10 @@ fn two_unrelated_contacts_at_an_irrational_angle() {
          11/4 | root(-3, 24, 29) near 0.11 | phase-end
          11/4 | root(-3, 24, 29) near 0.11 | plan-end",
     )
-    .segments("p", "0 | 3/2 | free\n 3/2 | 5/2 | B3@block.2\n 5/2 | 11/4 | B1@floor.2");
+    .segments(
+        "p",
+        "0 | 3/2 | free\n 3/2 | 5/2 | B3@block.2\n 5/2 | 11/4 | B1@floor.2",
+    );
 }
 
 /// A tip falls exactly into a groove's reflex corner: (4,3)·dθ runs into the right wall,
@@ -210,7 +213,9 @@ fn a_slot_of_zero_clearance() {
 /// Of clearance 2⁻²⁰⁰: it opens, and rest lies in it.
 #[test]
 fn a_slot_of_the_least_clearance() {
-    slot(&two_to(-200)).outcome("completed 3").segments("p", "0 | 3 | free");
+    slot(&two_to(-200))
+        .outcome("completed 3")
+        .segments("p", "0 | 3 | free");
 }
 
 /// Started inside: of zero clearance there is no interval at all.
@@ -524,8 +529,15 @@ fn listings() {
         ("20,0 -20,0 -20,-1 20,-1", 0),
         ("-20,-1 0,-1 20,-1 20,0 -20,0", 3),
     ] {
-        for (pawl, v) in [("0,0 3,-4 4,-1", 1), ("4,-1 3,-4 0,0", 1), ("3,-4 4,-1 2,-1/2 0,0", 0)] {
-            tell(&format!("floor: {floor}\npawl p at 0,6: {pawl}\nmove 0,-1 for 3")).events(&story(e, v));
+        for (pawl, v) in [
+            ("0,0 3,-4 4,-1", 1),
+            ("4,-1 3,-4 0,0", 1),
+            ("3,-4 4,-1 2,-1/2 0,0", 0),
+        ] {
+            tell(&format!(
+                "floor: {floor}\npawl p at 0,6: {pawl}\nmove 0,-1 for 3"
+            ))
+            .events(&story(e, v));
         }
     }
 }
