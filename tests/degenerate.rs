@@ -541,3 +541,42 @@ fn listings() {
         }
     }
 }
+
+// ── arcs closed around the cylinder ─────────────────────────────────────────────────────────
+
+/// A square about its hinge over a peg's tip: nearer than the half-diagonal 2√2 it can turn only in
+/// four windows about 0, 90°, 180°, 270°, of half-width ψ with cos ψ = 2/|w|; the closed pieces between
+/// them end in cusps, corner on tip, and all their ends together run around the cylinder. Started
+/// in the window at 90°, |w| = 5/2, tan(ψ/2) = 1/3, it snaps to that window's lower end,
+/// (1 − 1/3)/(1 + 1/3) = 1/2; lifted off it is let go at |w| = 2√2, at 45°.
+#[test]
+fn windows_around_the_cylinder() {
+    tell(
+        "peg: 0,0 -1,-3 1,-3
+         pawl p at 0,5/2: -2,-2 2,-2 2,2 -2,2; start 1
+         move 0,1 for 1",
+    )
+    .events(
+        "0 | 1 > 1/2 | snap-free / snap-free-vertex
+         0 | 1/2 | snap-landing | A3@peg.0
+         -5/2+2√2 | -1+√2 > 0 | snap-free-vertex | A3@peg.0
+         1 | 0 | phase-end
+         1 | 0 | plan-end",
+    )
+    .segments("p", "0 | -5/2+2√2 | A3@peg.0\n -5/2+2√2 | 1 | free");
+}
+
+/// Pressed down on the tip instead: the window closes at |w| = 2. From w = (6/5, −2) it is struck at
+/// rest, and w = (6/5, −8/5) is the end, u = 1/3.
+#[test]
+fn a_window_closes() {
+    tell(
+        "peg: 0,0 -1,-3 1,-3
+         pawl p at -6/5,5: -2,-2 2,-2 2,2 -2,2
+         move 0,-1 for 5",
+    )
+    .events(
+        "3 | 0 | translational-collision | A0@peg.0
+         17/5 | 1/3 | jam-single | A0@peg.0",
+    );
+}

@@ -24,7 +24,7 @@
 //! contacts of the root begin with `root-`. Without a fourth column they are not looked at.
 //!
 //! **Numbers.** `3/7`, `1/2-3√5`, `-√2`, or `root(1, 0, -4) near 0.5`: the real root of
-//! 1 − 4x² (constant first) nearest to 0.5. They are compared exactly.
+//! 1 − 4x² (constant first) nearest to 0.5. They are compared exactly. `*` is any number.
 
 use snapfit::contact::{Contact, ContactKind};
 use snapfit::geometry::Vec2;
@@ -188,6 +188,9 @@ pub fn number(text: &str) -> Algebraic {
 
 /// Whether an orientation is as written.
 fn angle_is(angle: &Angle, text: &str) -> bool {
+    if text == "*" {
+        return true;
+    }
     let (u, winding) = match text.split_once(" w") {
         Some((u, w)) => (u, w.trim().parse::<i64>().unwrap()),
         None => (text, 0),
@@ -302,7 +305,7 @@ impl Told {
     }
 
     fn time_is(&self, phase: usize, t: &Time, text: &str) -> bool {
-        self.global(phase, t) == Time::at(number(text))
+        text == "*" || self.global(phase, t) == Time::at(number(text))
     }
 
     fn contacts_of(&self, e: &Event) -> Vec<String> {
