@@ -44,6 +44,7 @@
 //! ```
 
 pub mod contact;
+pub mod face;
 pub mod geometry;
 pub mod motion;
 pub mod number;

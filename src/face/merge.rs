@@ -1,0 +1,248 @@
+//! One face by divide and conquer: the face of each half, and of the two the part that holds the start.
+//!
+//! The idea (Guibas, Sharir & Sifrony 1988; Donald & Pai, Lemma 9.2): the face R of the red arcs and the face
+//! B of the blue ones that hold the start z. The face of all arcs is the component of R ∩ B that
+//! holds z, and it is also the face of z among the *edges* of ∂R and ∂B alone, because R, connected and
+//! clear of ∂R, is the face of z in the arrangement of ∂R. So the merge is again a walk, on
+//! edges instead of arcs, and hidden arcs are never seen again. It follows the component of z only:
+//! no other component of R ∩ B is touched, though there may be quadratically many crossings in all.
+//!
+//! Edges stay cut at every vertex, also where an arc ends on them from outside. Nothing more is needed for
+//! the count of the whole arrangement: let p be a point of the final face's boundary where arcs meet. The arcs
+//! of one half through p bound that half's face there (p lies in its closure), so p is a vertex of R
+//! or of B, or one edge of each passes through it and the walk finds the crossing.
+
+use super::index::EMPTY;
+use super::kernel::Kernel;
+use super::trace::{Carrier, Comp, Dir, Item, NONE, OnArc, Point, Tracer};
+
+/// The boundary of one face: its edges by their vertices, cut at every vertex of the arrangement.
+#[derive(Default)]
+pub(crate) struct Face {
+    /// The edges; their ends name `points`, their components `comps`.
+    pub(crate) items: Vec<Item>,
+    /// On which sides of each edge the face lies: above, below.
+    pub(crate) sides: Vec<[bool; 2]>,
+    pub(crate) points: Vec<Point>,
+    /// The boundary cycles: where each begins.
+    pub(crate) comps: Vec<Comp>,
+    pub(crate) half_edges: u64,
+    pub(crate) unbounded: bool,
+}
+
+/// The face of arcs that know nothing of each other, by walking.
+pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, OnArc> {
+    let mut items = Vec::with_capacity(arcs.len());
+    let mut comps = Vec::with_capacity(arcs.len());
+    let mut ends = Vec::with_capacity(2 * arcs.len());
+    for (i, arc) in arcs.iter().enumerate() {
+        let v = ends.len() as u32;
+        let (low, high) = match arc.carrier {
+            Carrier::Graph(c) => (c, c),
+            Carrier::Vertical(a, b) => (a, b),
+        };
+        ends.push(Point { x: arc.l, c: low });
+        ends.push(Point { x: arc.r, c: high });
+        items.push(Item {
+            vl: v,
+            vr: v + 1,
+            color: 0,
+            comp: i as u32,
+            ..*arc
+        });
+        comps.push(Comp {
+            vertex: v,
+            item: i as u32,
+        });
+    }
+    trace(k, &items, &comps, ends, start)
+}
+
+/// The face of two faces' edges.
+fn merge(k: &mut Kernel, red: Face, blue: Face, start: Point) -> Result<Face, OnArc> {
+    if red.items.is_empty() {
+        return Ok(blue);
+    }
+    if blue.items.is_empty() {
+        return Ok(red);
+    }
+    let (v, c, n) = (
+        red.points.len() as u32,
+        red.comps.len() as u32,
+        red.items.len() as u32,
+    );
+    let mut items = red.items;
+    items.iter_mut().for_each(|i| i.color = 1);
+    items.extend(blue.items.into_iter().map(|i| Item {
+        vl: i.vl + v,
+        vr: i.vr + v,
+        comp: i.comp + c,
+        color: 2,
+        ..i
+    }));
+    let mut comps = red.comps;
+    comps.extend(blue.comps.into_iter().map(|b| Comp {
+        vertex: b.vertex + v,
+        item: b.item + n,
+    }));
+    let mut points = red.points;
+    points.extend(blue.points);
+    trace(k, &items, &comps, points, start)
+}
+
+fn trace(
+    k: &mut Kernel,
+    items: &[Item],
+    comps: &[Comp],
+    points: Vec<Point>,
+    start: Point,
+) -> Result<Face, OnArc> {
+    let mut t = Tracer::new(k, items, comps, points.into_iter());
+    t.outline(start)?;
+    t.islands();
+    let face = extract(&mut t);
+    #[cfg(debug_assertions)]
+    check(&face, k);
+    Ok(face)
+}
+
+/// How the arcs are dealt to the leaves: a fixed seed, so that every run is the same.
+const SEED: u64 = 0x5eed_5eed_5eed_5eed;
+
+/// The face by merges, from leaves of `leaf` arcs. Counts the merges made.
+pub(crate) fn divide(
+    k: &mut Kernel,
+    arcs: &[Item],
+    start: Point,
+    leaf: usize,
+    merges: &mut u64,
+) -> Result<Face, OnArc> {
+    let mut dealt = arcs.to_vec();
+    let mut seed = SEED;
+    for i in (1..dealt.len()).rev() {
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        dealt.swap(i, ((seed >> 32) as usize) % (i + 1));
+    }
+    conquer(k, &dealt, start, leaf.max(1), merges)
+}
+
+fn conquer(
+    k: &mut Kernel,
+    arcs: &[Item],
+    start: Point,
+    leaf: usize,
+    merges: &mut u64,
+) -> Result<Face, OnArc> {
+    if arcs.len() <= leaf {
+        return walk(k, arcs, start);
+    }
+    let (red, blue) = arcs.split_at(arcs.len() / 2);
+    let red = conquer(k, red, start, leaf, merges)?;
+    let blue = conquer(k, blue, start, leaf, merges)?;
+    *merges += 1;
+    merge(k, red, blue, start)
+}
+
+/// The traced boundary with vertices numbered afresh.
+fn extract(t: &mut Tracer<'_>) -> Face {
+    let mut number = vec![NONE; t.vertices.len()];
+    let mut face = Face {
+        unbounded: t.unbounded,
+        ..Face::default()
+    };
+    for e in 0..t.edges.len() {
+        let edge = t.edges[e];
+        for v in [edge.low, edge.high] {
+            if number[v as usize] == NONE {
+                number[v as usize] = face.points.len() as u32;
+                face.points.push(t.vertices[v as usize].at);
+            }
+        }
+        let item = t.items[edge.item as usize];
+        let (low, high) = (
+            t.vertices[edge.low as usize].at,
+            t.vertices[edge.high as usize].at,
+        );
+        let carrier = match item.carrier {
+            Carrier::Graph(c) => Carrier::Graph(c),
+            Carrier::Vertical(..) => Carrier::Vertical(low.c, high.c),
+        };
+        face.items.push(Item {
+            carrier,
+            l: low.x,
+            r: high.x,
+            vl: number[edge.low as usize],
+            vr: number[edge.high as usize],
+            color: 0,
+            comp: edge.cycle,
+            arc: item.arc,
+            // Uncut, it keeps its box.
+            bounds: if item.l == low.x && item.r == high.x && carrier == item.carrier {
+                t.bounds(edge.item)
+            } else {
+                EMPTY
+            },
+        });
+        face.sides.push([edge.above, edge.below]);
+    }
+    for c in 0..t.cycles.len() {
+        let cycle = t.cycles[c];
+        face.half_edges += u64::from(cycle.half_edges);
+        let (from, to) = t.germs_of(cycle.leftmost);
+        let first = t.germs[from..to]
+            .iter()
+            .rev()
+            .find(|g| {
+                matches!(g.dir, Dir::Right | Dir::Up)
+                    && g.edge != NONE
+                    && t.edges[g.edge as usize].cycle == c as u32
+            })
+            .expect("a cycle begins with an edge to the right or up");
+        face.comps.push(Comp {
+            vertex: number[cycle.leftmost as usize],
+            item: first.edge,
+        });
+    }
+    face
+}
+
+/// The invariants of a boundary: every edge joins its points in order and lies on them, bounds the face on
+/// a side, and the half-edges of every vertex balance.
+#[cfg(debug_assertions)]
+fn check(face: &Face, k: &mut Kernel) {
+    let mut balance = vec![0i64; face.points.len()];
+    let mut sides = 0;
+    for (item, s) in face.items.iter().zip(&face.sides) {
+        let (p, q) = (face.points[item.vl as usize], face.points[item.vr as usize]);
+        match item.carrier {
+            Carrier::Graph(c) => {
+                assert!(k.cmp(p.x, q.x).is_lt(), "an edge goes to the right");
+                assert!(
+                    k.cmp_at(c, p.c, p.x).is_eq() && k.cmp_at(c, q.c, q.x).is_eq(),
+                    "an edge holds its ends"
+                );
+            }
+            Carrier::Vertical(..) => {
+                assert!(
+                    k.cmp(p.x, q.x).is_eq() && k.cmp_at(p.c, q.c, p.x).is_lt(),
+                    "a vertical goes up"
+                );
+            }
+        }
+        assert!(s[0] || s[1], "an edge bounds the face");
+        for (side, turn) in [(s[0], 1), (s[1], -1)] {
+            if side {
+                balance[item.vl as usize] += turn;
+                balance[item.vr as usize] -= turn;
+                sides += 1;
+            }
+        }
+    }
+    assert_eq!(
+        sides, face.half_edges,
+        "every half-edge is the side of an edge"
+    );
+    assert!(balance.iter().all(|&b| b == 0), "cycles are closed");
+}

@@ -1,0 +1,26 @@
+//! One face of an arrangement of arcs: the component of the plane without them that holds a start.
+//!
+//! The idea: the whole arrangement may have quadratically many vertices, one face has nearly linearly many, so
+//! never build the arrangement. Two ways lead to the face. The *walk* finds the arc below the start and goes
+//! round the boundary, arc by arc, with a static index that tells what is near (`trace.rs`); a plane
+//! sweep over the boundary finds the islands (`island.rs`). The *merge* divides the arcs at random,
+//! takes the face of each half and merges the two, by the same walk on the edges of both faces
+//! (`merge.rs`): hidden arcs take no part, which is what bounds the time whatever the arcs look like.
+//!
+//! Arcs are graphs t = P(u)/Q(u) over an interval of u, or verticals u = const. All decisions are exact: doubles
+//! with error bounds first, algebraic numbers where those meet (`kernel.rs`). Overlapping arcs, common points,
+//! tangencies, arcs that end inside others, isolated arcs and unbounded faces are ordinary input.
+
+mod approx;
+mod hash;
+mod index;
+mod island;
+mod kernel;
+mod merge;
+mod read;
+mod run;
+mod trace;
+
+pub use kernel::Stats;
+pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};
+pub use run::{Answer, Args, FaceError, Method, Question, Report, face, run_cli};
