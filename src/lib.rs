@@ -2,6 +2,7 @@
 
 pub mod contact;
 pub mod geometry;
+pub mod lp;
 pub mod motion;
 pub mod number;
 pub mod scene;
