@@ -53,7 +53,7 @@ fn agreement(path: &Path, outcome: &Outcome) -> &'static str {
     let folder = path.parent().unwrap_or(Path::new("."));
     let ours = outcome.objective.as_ref().map(ToString::to_string);
     if let Ok(text) = std::fs::read_to_string(folder.join(format!("{name}.exact"))) {
-        return verdict(ours.as_deref() == Some(text.trim()));
+        return verdict(ours.as_deref().map(|o| o.trim_start_matches('-')) == Some(text.trim()));
     }
     let Ok(table) = std::fs::read_to_string(folder.join("truth.tsv")) else {
         return "unknown";

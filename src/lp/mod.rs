@@ -3,6 +3,7 @@
 mod basis;
 mod budget;
 mod field;
+mod float;
 mod lift;
 mod lu;
 pub mod model;

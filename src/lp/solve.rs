@@ -2,6 +2,7 @@
 
 use super::basis::Basis;
 use super::budget::Budget;
+use super::float::{Engine, Program};
 use super::model::Model;
 use super::outcome::{Certificate, Outcome, Status, conclude};
 use super::problem::Problem;
@@ -72,12 +73,26 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         return out;
     }
     let mut effort = Effort::default();
-    let start = Basis::slack(&problem);
+    let mut start = Basis::slack(&problem);
+    let mut iterations = 0;
+    if options.method == Method::Warm {
+        let direct = Program::new(&problem);
+        let program = direct.dual().unwrap_or(direct);
+        let mut engine = Engine::slack(&program);
+        let t = std::time::Instant::now();
+        let ending = engine.optimise(budget);
+        if std::env::var_os("LP_TRACE").is_some() {
+            eprintln!("float {ending:?} {} iterations {:.3}", engine.iterations, t.elapsed().as_secs_f64());
+        }
+        iterations = engine.iterations;
+        start = program.basis(&problem, &engine.status);
+    }
     let run = simplex::run(&problem, start, budget, &mut effort);
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err(_) => Outcome::undecided("a limit was reached"),
     };
+    outcome.float_iterations = iterations;
     outcome.exact_pivots = effort.pivots;
     outcome
 }
