@@ -1,65 +1,781 @@
-//! `Int`: integers of any size. STUB: signatures are fixed, bodies to be written.
+//! `Int`: integers of any size behind one seam.
+//!
+//! The idea: almost every integer of a real scene fits a machine word, and the few that do not must
+//! cost no more than a big-number library asks. So an `Int` is an `i128` held inline, and only what
+//! does not fit lives on the heap. The form is canonical (a value that fits is always inline), which
+//! makes equality and hashing a plain comparison of representations. This file is the only one
+//! of the crate that names a big-number backend; everything else goes through the methods here.
+
+use num_bigint::{BigInt, BigUint, Sign};
+use num_integer::Integer;
+use num_traits::{Signed, ToPrimitive};
 use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// An integer of any size.
-#[derive(Clone, PartialEq, Eq, Hash, Debug, Default, PartialOrd, Ord)]
-pub struct Int(i128);
+/// An integer of any size; no allocation while it fits an `i128`.
+///
+/// # Example
+/// ```
+/// use snapfit::number::Int;
+/// let big = Int::from(10i64).pow(40);
+/// assert_eq!(big.to_string(), format!("1{}", "0".repeat(40)));
+/// assert_eq!(big.div_exact(&Int::from(10i64).pow(39)), Int::from(10i64));
+/// ```
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Int(Repr);
+
+/// Invariant: `Big` holds only values outside the range of `i128`.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Repr {
+    Small(i128),
+    Big(BigInt),
+}
+use Repr::{Big, Small};
+
+/// Restores the canonical form.
+fn canonical(b: BigInt) -> Int {
+    if b.bits() <= 128
+        && let Some(v) = b.to_i128()
+    {
+        return Int(Small(v));
+    }
+    Int(Big(b))
+}
+
+/// Whether a value fits an `i64`: decides between one multiplication instruction and several.
+#[inline]
+fn narrow(v: i128) -> bool {
+    v as i64 as i128 == v
+}
+
+/// Binary gcd on machine words; gcd(0, x) = x.
+#[inline]
+pub(crate) fn gcd_u64(mut a: u64, mut b: u64) -> u64 {
+    if a == 0 || b == 0 {
+        return a | b;
+    }
+    let shift = (a | b).trailing_zeros();
+    a >>= a.trailing_zeros();
+    b >>= b.trailing_zeros();
+    while a != b {
+        // The larger is replaced by the difference, written so that it compiles without a branch.
+        let (d, borrow) = a.overflowing_sub(b);
+        b = if borrow { a } else { b };
+        a = if borrow { d.wrapping_neg() } else { d };
+        a >>= a.trailing_zeros();
+    }
+    a << shift
+}
+
+fn gcd_u128(mut a: u128, mut b: u128) -> u128 {
+    if a == 0 || b == 0 {
+        return a | b;
+    }
+    // One division first: operands of very different size would make the subtractive loop long.
+    if a < b {
+        std::mem::swap(&mut a, &mut b);
+    }
+    if a >> 64 != 0 && b >> 64 == 0 {
+        return gcd_u64((a % b) as u64, b as u64) as u128;
+    }
+    let shift = (a | b).trailing_zeros();
+    a >>= a.trailing_zeros();
+    b >>= b.trailing_zeros();
+    while a != b {
+        if (a | b) >> 64 == 0 {
+            return (gcd_u64(a as u64, b as u64) as u128) << shift;
+        }
+        if a < b {
+            std::mem::swap(&mut a, &mut b);
+        }
+        a -= b;
+        a >>= a.trailing_zeros();
+    }
+    a << shift
+}
+
+fn limbs(b: &BigInt) -> Vec<u64> {
+    b.iter_u64_digits().collect()
+}
+
+fn from_limbs(l: &[u64]) -> BigUint {
+    let mut digits = Vec::with_capacity(2 * l.len());
+    for &d in l {
+        digits.push(d as u32);
+        digits.push((d >> 32) as u32);
+    }
+    BigUint::new(digits)
+}
+
+fn trim(l: &mut Vec<u64>) {
+    while l.last() == Some(&0) {
+        l.pop();
+    }
+}
+
+/// Whether a < b, both trimmed.
+fn limbs_less(a: &[u64], b: &[u64]) -> bool {
+    a.len()
+        .cmp(&b.len())
+        .then_with(|| a.iter().rev().cmp(b.iter().rev()))
+        == Ordering::Less
+}
+
+/// Lehmer's gcd (Knuth, TAOCP 2, algorithm 4.5.2 L): Euclid's quotients are found on the leading 62
+/// bits and applied to the whole numbers some thirty bits at a time.
+fn gcd_limbs(mut a: Vec<u64>, mut b: Vec<u64>) -> BigUint {
+    trim(&mut a);
+    trim(&mut b);
+    if limbs_less(&a, &b) {
+        std::mem::swap(&mut a, &mut b);
+    }
+    loop {
+        if b.is_empty() {
+            return from_limbs(&a);
+        }
+        if a.len() <= 2 {
+            let word = |l: &[u64]| {
+                l.iter()
+                    .rev()
+                    .fold(0u128, |acc, &d| (acc << 64) | d as u128)
+            };
+            return BigUint::from(gcd_u128(word(&a), word(&b)));
+        }
+        let n = a.len();
+        let s = a[n - 1].leading_zeros();
+        let top = |l: &[u64]| {
+            let at = |i: usize| l.get(i).copied().unwrap_or(0) as u128;
+            let two = (at(n - 1) << 64) | at(n - 2);
+            ((two << s) >> 66) as i64
+        };
+        let (mut x, mut y) = (top(&a), top(&b));
+        let (mut ca, mut cb, mut cc, mut cd) = (1i64, 0i64, 0i64, 1i64);
+        while y + cc != 0 && y + cd != 0 {
+            let q = (x + ca) / (y + cc);
+            if q != (x + cb) / (y + cd) {
+                break;
+            }
+            let t = ca - q * cc;
+            ca = cc;
+            cc = t;
+            let t = cb - q * cd;
+            cb = cd;
+            cd = t;
+            let t = x - q * y;
+            x = y;
+            y = t;
+        }
+        if cb == 0 {
+            // The leading bits settle no quotient: one true division.
+            let (ba, bb) = (from_limbs(&a), from_limbs(&b));
+            let r = ba % &bb;
+            a = b;
+            b = r.iter_u64_digits().collect();
+        } else {
+            b.resize(n, 0);
+            let (mut carry_a, mut carry_b) = (0i128, 0i128);
+            for (pa, pb) in a.iter_mut().zip(b.iter_mut()) {
+                let (va, vb) = (*pa as i128, *pb as i128);
+                // |cofactor| < 2^62 and a limb < 2^64; the two products differ in sign.
+                carry_a += ca as i128 * va + cb as i128 * vb;
+                carry_b += cc as i128 * va + cd as i128 * vb;
+                *pa = carry_a as u64;
+                *pb = carry_b as u64;
+                carry_a >>= 64;
+                carry_b >>= 64;
+            }
+            debug_assert!(carry_a == 0 && carry_b == 0);
+            trim(&mut a);
+            trim(&mut b);
+        }
+    }
+}
 
 impl Int {
     /// Zero.
-    pub fn zero() -> Int { todo!() }
+    #[inline]
+    pub fn zero() -> Int {
+        Int(Small(0))
+    }
     /// One.
-    pub fn one() -> Int { todo!() }
+    #[inline]
+    pub fn one() -> Int {
+        Int(Small(1))
+    }
     /// -1, 0 or 1.
-    pub fn sign(&self) -> i32 { todo!() }
+    #[inline]
+    pub fn sign(&self) -> i32 {
+        match &self.0 {
+            Small(v) => v.signum() as i32,
+            Big(b) => match b.sign() {
+                Sign::Minus => -1,
+                Sign::NoSign => 0,
+                Sign::Plus => 1,
+            },
+        }
+    }
     /// Whether zero.
-    pub fn is_zero(&self) -> bool { self.sign() == 0 }
+    #[inline]
+    pub fn is_zero(&self) -> bool {
+        matches!(self.0, Small(0))
+    }
+    /// Whether one.
+    #[inline]
+    pub fn is_one(&self) -> bool {
+        matches!(self.0, Small(1))
+    }
+    /// Whether divisible by two.
+    pub fn is_even(&self) -> bool {
+        match &self.0 {
+            Small(v) => v & 1 == 0,
+            Big(b) => !b.bit(0),
+        }
+    }
     /// Absolute value.
-    pub fn abs(&self) -> Int { todo!() }
-    /// Greatest common divisor, non-negative.
-    pub fn gcd(&self, _other: &Int) -> Int { todo!() }
-    /// Exact quotient; the caller knows that `d` divides `self`.
-    pub fn div_exact(&self, _d: &Int) -> Int { todo!() }
-    /// Floor division and the non-negative remainder for d > 0.
-    pub fn div_rem_floor(&self, _d: &Int) -> (Int, Int) { todo!() }
-    /// Bits of |self|.
-    pub fn bits(&self) -> u64 { todo!() }
+    pub fn abs(&self) -> Int {
+        if self.sign() < 0 {
+            self.negated()
+        } else {
+            self.clone()
+        }
+    }
+    /// Greatest common divisor, non-negative; gcd(0, 0) = 0. Quadratic in the number of words.
+    pub fn gcd(&self, other: &Int) -> Int {
+        match (&self.0, &other.0) {
+            (Small(a), Small(b)) => {
+                let (a, b) = (a.unsigned_abs(), b.unsigned_abs());
+                if a == 1 || b == 1 {
+                    return Int::one();
+                }
+                if (a | b) >> 64 == 0 {
+                    return Int(Small(gcd_u64(a as u64, b as u64) as i128));
+                }
+                Int::from_u128(gcd_u128(a, b))
+            }
+            (Small(a), Big(b)) | (Big(b), Small(a)) => {
+                if *a == 0 {
+                    return canonical(b.abs());
+                }
+                let a = a.unsigned_abs();
+                if a == 1 {
+                    return Int::one();
+                }
+                let r = if a >> 64 == 0 { b % (a as u64) } else { b % a };
+                let r = r
+                    .abs()
+                    .to_u128()
+                    .expect("a remainder is less than the divisor");
+                Int::from_u128(gcd_u128(a, r))
+            }
+            (Big(a), Big(b)) => canonical(BigInt::from(gcd_limbs(limbs(a), limbs(b)))),
+        }
+    }
+    /// From an unsigned 128-bit value.
+    pub(crate) fn from_u128(v: u128) -> Int {
+        match i128::try_from(v) {
+            Ok(v) => Int(Small(v)),
+            Err(_) => Int(Big(BigInt::from(v))),
+        }
+    }
+    /// Exact quotient; the caller knows that `d` divides `self` (the result means nothing otherwise).
+    ///
+    /// # Panics
+    /// If `d` is zero.
+    pub fn div_exact(&self, d: &Int) -> Int {
+        assert!(!d.is_zero(), "division by zero");
+        match (&self.0, &d.0) {
+            (_, Small(1)) => self.clone(),
+            (Small(a), Small(b)) => {
+                if narrow(*a) && narrow(*b) {
+                    return Int(Small(match (*a as i64).checked_div(*b as i64) {
+                        Some(q) => q as i128,
+                        None => -*a,
+                    }));
+                }
+                match a.checked_div(*b) {
+                    Some(q) => Int(Small(q)),
+                    None => self.negated(),
+                }
+            }
+            (Big(a), Small(b)) => canonical(if narrow(*b) { a / (*b as i64) } else { a / *b }),
+            (Small(a), Big(b)) => canonical(BigInt::from(*a) / b),
+            (Big(a), Big(b)) => canonical(a / b),
+        }
+    }
+    /// Floor division: `self = q·d + r` with 0 ≤ r < d for d > 0 (and d < r ≤ 0 for d < 0).
+    ///
+    /// # Panics
+    /// If `d` is zero.
+    pub fn div_rem_floor(&self, d: &Int) -> (Int, Int) {
+        assert!(!d.is_zero(), "division by zero");
+        match (&self.0, &d.0) {
+            (Small(a), Small(b)) if *a != i128::MIN => {
+                let (q, r) = if narrow(*a) && narrow(*b) && *a != i64::MIN as i128 {
+                    let (a, b) = (*a as i64, *b as i64);
+                    ((a / b) as i128, (a % b) as i128)
+                } else {
+                    (a / b, a % b)
+                };
+                if r != 0 && (r < 0) != (*b < 0) {
+                    (Int(Small(q - 1)), Int(Small(r + b)))
+                } else {
+                    (Int(Small(q)), Int(Small(r)))
+                }
+            }
+            _ => {
+                let (q, r) = self.to_big().div_mod_floor(&d.to_big());
+                (canonical(q), canonical(r))
+            }
+        }
+    }
+    /// Bits of |self|; 0 for zero.
+    #[inline]
+    pub fn bits(&self) -> u64 {
+        match &self.0 {
+            Small(v) => (128 - v.unsigned_abs().leading_zeros()) as u64,
+            Big(b) => b.bits(),
+        }
+    }
+    /// The number of times two divides |self|; None for zero.
+    pub fn trailing_zeros(&self) -> Option<u64> {
+        match &self.0 {
+            Small(0) => None,
+            Small(v) => Some(v.trailing_zeros() as u64),
+            Big(b) => b.trailing_zeros(),
+        }
+    }
     /// self * 2^k.
-    pub fn shl(&self, _k: u64) -> Int { todo!() }
+    pub fn shl(&self, k: u64) -> Int {
+        match &self.0 {
+            Small(0) => Int::zero(),
+            _ if k == 0 => self.clone(),
+            Small(v) if k < v.unsigned_abs().leading_zeros() as u64 => Int(Small(v << k)),
+            Small(v) => canonical(BigInt::from(*v) << k),
+            Big(b) => Int(Big(b << k)),
+        }
+    }
     /// floor(self / 2^k).
-    pub fn shr(&self, _k: u64) -> Int { todo!() }
+    pub fn shr(&self, k: u64) -> Int {
+        match &self.0 {
+            Small(v) => Int(Small(v >> k.min(127))),
+            Big(b) => canonical(b >> k),
+        }
+    }
     /// self^k.
-    pub fn pow(&self, _k: u32) -> Int { todo!() }
+    pub fn pow(&self, k: u32) -> Int {
+        if let Small(v) = self.0
+            && let Some(r) = v.checked_pow(k)
+        {
+            return Int(Small(r));
+        }
+        canonical(self.to_big().pow(k))
+    }
+    /// floor(√self); None for negative numbers.
+    pub fn sqrt(&self) -> Option<Int> {
+        match &self.0 {
+            Small(v) if *v < 0 => None,
+            Small(v) => Some(Int(Small(if *v >> 64 == 0 {
+                (*v as u64).isqrt() as i128
+            } else {
+                v.isqrt()
+            }))),
+            Big(b) if b.is_negative() => None,
+            Big(b) => Some(canonical(b.sqrt())),
+        }
+    }
+    /// √self where self is a perfect square.
+    pub fn sqrt_exact(&self) -> Option<Int> {
+        // Squares are 0, 1, 4, 9, 16, 17, 25, 33, 36, 41, 49, 57 modulo 64: most others stop here.
+        const SQUARES: u64 = 0x0202_0212_0203_0213;
+        if self.sign() < 0 {
+            return None;
+        }
+        let low = match &self.0 {
+            Small(v) => (v & 63) as u64,
+            Big(b) => b.iter_u64_digits().next().unwrap_or(0) & 63,
+        };
+        if SQUARES >> low & 1 == 0 {
+            return None;
+        }
+        let r = self.sqrt()?;
+        (&r * &r == *self).then_some(r)
+    }
     /// The value as i64 where it fits.
-    pub fn to_i64(&self) -> Option<i64> { todo!() }
+    #[inline]
+    pub fn to_i64(&self) -> Option<i64> {
+        match &self.0 {
+            Small(v) if narrow(*v) => Some(*v as i64),
+            _ => None,
+        }
+    }
+    /// The value as i128 where it fits.
+    #[inline]
+    pub fn to_i128(&self) -> Option<i128> {
+        match &self.0 {
+            Small(v) => Some(*v),
+            Big(_) => None,
+        }
+    }
+    /// The non-negative remainder modulo `m`.
+    ///
+    /// # Panics
+    /// If `m` is zero.
+    pub fn mod_u64(&self, m: u64) -> u64 {
+        match &self.0 {
+            Small(v) if narrow(*v) && m >> 63 == 0 => (*v as i64).rem_euclid(m as i64) as u64,
+            Small(v) => v.rem_euclid(m as i128) as u64,
+            Big(b) => {
+                let r = (b.magnitude() % m)
+                    .to_u64()
+                    .expect("a remainder is less than the modulus");
+                if b.is_negative() && r != 0 { m - r } else { r }
+            }
+        }
+    }
+    /// The words of |self|, least significant first.
+    pub(crate) fn for_each_word(&self, mut f: impl FnMut(u64)) {
+        match &self.0 {
+            Small(v) => {
+                let v = v.unsigned_abs();
+                f(v as u64);
+                f((v >> 64) as u64);
+            }
+            Big(b) => b.iter_u64_digits().for_each(f),
+        }
+    }
+    /// |self| = (top + fraction)·2^shift with 0 ≤ fraction < 1, `top` of at most 64 bits and the
+    /// flag telling whether the fraction is not zero.
+    pub(crate) fn top64(&self) -> (u64, u64, bool) {
+        match &self.0 {
+            Small(v) => {
+                let a = v.unsigned_abs();
+                let shift = 64u32.saturating_sub(a.leading_zeros());
+                let top = a >> shift;
+                (top as u64, shift as u64, top << shift != a)
+            }
+            Big(b) => {
+                let mut words = b.iter_u64_digits().rev();
+                let (h, l) = (words.next().unwrap_or(0), words.next().unwrap_or(0));
+                let s = h.leading_zeros();
+                let two = (((h as u128) << 64 | l as u128) << s >> 64) as u64;
+                let shift = b.bits() - 64;
+                (two, shift, b.trailing_zeros().unwrap_or(0) < shift)
+            }
+        }
+    }
+    fn to_big(&self) -> BigInt {
+        match &self.0 {
+            Small(v) => BigInt::from(*v),
+            Big(b) => b.clone(),
+        }
+    }
+    #[inline]
+    fn plus(&self, o: &Int) -> Int {
+        match (&self.0, &o.0) {
+            (Small(a), Small(b)) => match a.checked_add(*b) {
+                Some(v) => Int(Small(v)),
+                None => Int(Big(BigInt::from(*a) + *b)),
+            },
+            (Big(a), Small(b)) | (Small(b), Big(a)) => canonical(a + *b),
+            (Big(a), Big(b)) => canonical(a + b),
+        }
+    }
+    #[inline]
+    fn minus(&self, o: &Int) -> Int {
+        match (&self.0, &o.0) {
+            (Small(a), Small(b)) => match a.checked_sub(*b) {
+                Some(v) => Int(Small(v)),
+                None => Int(Big(BigInt::from(*a) - *b)),
+            },
+            (Big(a), Small(b)) => canonical(a - *b),
+            (Small(a), Big(b)) => canonical(*a - b),
+            (Big(a), Big(b)) => canonical(a - b),
+        }
+    }
+    #[inline]
+    fn times(&self, o: &Int) -> Int {
+        match (&self.0, &o.0) {
+            (Small(a), Small(b)) => {
+                if narrow(*a) && narrow(*b) {
+                    return Int(Small(*a as i64 as i128 * *b as i64 as i128));
+                }
+                match a.checked_mul(*b) {
+                    Some(v) => Int(Small(v)),
+                    None => canonical(BigInt::from(*a) * *b),
+                }
+            }
+            (Big(a), Small(b)) | (Small(b), Big(a)) => {
+                if *b == 0 {
+                    Int::zero()
+                } else if narrow(*b) {
+                    canonical(a * (*b as i64))
+                } else {
+                    canonical(a * *b)
+                }
+            }
+            (Big(a), Big(b)) => Int(Big(a * b)),
+        }
+    }
+    #[inline]
+    fn negated(&self) -> Int {
+        match &self.0 {
+            Small(v) => match v.checked_neg() {
+                Some(v) => Int(Small(v)),
+                None => Int(Big(-BigInt::from(*v))),
+            },
+            Big(b) => canonical(-b),
+        }
+    }
 }
-impl From<i64> for Int { fn from(_v: i64) -> Int { todo!() } }
-impl From<i128> for Int { fn from(_v: i128) -> Int { todo!() } }
-impl From<u64> for Int { fn from(_v: u64) -> Int { todo!() } }
-impl std::str::FromStr for Int { type Err = String; fn from_str(_s: &str) -> Result<Int, String> { todo!() } }
-impl fmt::Display for Int { fn fmt(&self, _f: &mut fmt::Formatter<'_>) -> fmt::Result { todo!() } }
-macro_rules! ops { ($t:ty) => {
-    impl Add<&$t> for &$t { type Output = $t; fn add(self, _o: &$t) -> $t { todo!() } }
-    impl Sub<&$t> for &$t { type Output = $t; fn sub(self, _o: &$t) -> $t { todo!() } }
-    impl Mul<&$t> for &$t { type Output = $t; fn mul(self, _o: &$t) -> $t { todo!() } }
-    impl Add<$t> for $t { type Output = $t; fn add(self, _o: $t) -> $t { todo!() } }
-    impl Sub<$t> for $t { type Output = $t; fn sub(self, _o: $t) -> $t { todo!() } }
-    impl Mul<$t> for $t { type Output = $t; fn mul(self, _o: $t) -> $t { todo!() } }
-    impl Add<&$t> for $t { type Output = $t; fn add(self, _o: &$t) -> $t { todo!() } }
-    impl Sub<&$t> for $t { type Output = $t; fn sub(self, _o: &$t) -> $t { todo!() } }
-    impl Mul<&$t> for $t { type Output = $t; fn mul(self, _o: &$t) -> $t { todo!() } }
-    impl Add<$t> for &$t { type Output = $t; fn add(self, _o: $t) -> $t { todo!() } }
-    impl Sub<$t> for &$t { type Output = $t; fn sub(self, _o: $t) -> $t { todo!() } }
-    impl Mul<$t> for &$t { type Output = $t; fn mul(self, _o: $t) -> $t { todo!() } }
-    impl Neg for &$t { type Output = $t; fn neg(self) -> $t { todo!() } }
-    impl Neg for $t { type Output = $t; fn neg(self) -> $t { todo!() } }
-    impl AddAssign<&$t> for $t { fn add_assign(&mut self, _o: &$t) { todo!() } }
-    impl SubAssign<&$t> for $t { fn sub_assign(&mut self, _o: &$t) { todo!() } }
-    impl MulAssign<&$t> for $t { fn mul_assign(&mut self, _o: &$t) { todo!() } }
-} }
+
+impl Default for Int {
+    fn default() -> Int {
+        Int::zero()
+    }
+}
+impl PartialOrd for Int {
+    fn partial_cmp(&self, o: &Int) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+impl Ord for Int {
+    fn cmp(&self, o: &Int) -> Ordering {
+        match (&self.0, &o.0) {
+            (Small(a), Small(b)) => a.cmp(b),
+            (Big(a), Big(b)) => a.cmp(b),
+            // A big value lies outside the range of every small one.
+            (Big(a), Small(_)) => a.sign().cmp(&Sign::NoSign),
+            (Small(_), Big(b)) => Sign::NoSign.cmp(&b.sign()),
+        }
+    }
+}
+impl fmt::Debug for Int {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+impl fmt::Display for Int {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Small(v) => fmt::Display::fmt(v, f),
+            Big(b) => fmt::Display::fmt(b, f),
+        }
+    }
+}
+impl From<i32> for Int {
+    fn from(v: i32) -> Int {
+        Int(Small(v as i128))
+    }
+}
+impl From<i64> for Int {
+    #[inline]
+    fn from(v: i64) -> Int {
+        Int(Small(v as i128))
+    }
+}
+impl From<i128> for Int {
+    #[inline]
+    fn from(v: i128) -> Int {
+        Int(Small(v))
+    }
+}
+impl From<u64> for Int {
+    #[inline]
+    fn from(v: u64) -> Int {
+        Int(Small(v as i128))
+    }
+}
+impl From<BigInt> for Int {
+    fn from(v: BigInt) -> Int {
+        canonical(v)
+    }
+}
+impl From<Int> for BigInt {
+    fn from(v: Int) -> BigInt {
+        match v.0 {
+            Small(v) => BigInt::from(v),
+            Big(b) => b,
+        }
+    }
+}
+impl std::str::FromStr for Int {
+    type Err = String;
+    /// Reads `[+-]digits`; nothing else (no spaces, no underscores).
+    fn from_str(s: &str) -> Result<Int, String> {
+        let digits = s.strip_prefix(['+', '-']).unwrap_or(s);
+        if digits.is_empty() || !digits.bytes().all(|c| c.is_ascii_digit()) {
+            return Err(format!("not an integer: {s:?}"));
+        }
+        if s.len() <= 38 {
+            return s
+                .parse::<i128>()
+                .map(|v| Int(Small(v)))
+                .map_err(|e| e.to_string());
+        }
+        let v = BigUint::parse_bytes(digits.as_bytes(), 10)
+            .ok_or_else(|| format!("not an integer: {s:?}"))?;
+        let v = BigInt::from(v);
+        Ok(canonical(if s.starts_with('-') { -v } else { v }))
+    }
+}
+
+/// Every form of the ring operators, by value and by reference, from the inherent methods
+/// `plus`, `minus`, `times` and `negated`.
+macro_rules! ops {
+    ($t:ty) => {
+        $crate::number::int::ops!(@two $t, Add, add, plus);
+        $crate::number::int::ops!(@two $t, Sub, sub, minus);
+        $crate::number::int::ops!(@two $t, Mul, mul, times);
+        impl Neg for &$t {
+            type Output = $t;
+            #[inline]
+            fn neg(self) -> $t {
+                self.negated()
+            }
+        }
+        impl Neg for $t {
+            type Output = $t;
+            #[inline]
+            fn neg(self) -> $t {
+                self.negated()
+            }
+        }
+        $crate::number::int::ops!(@assign $t, AddAssign, add_assign, plus);
+        $crate::number::int::ops!(@assign $t, SubAssign, sub_assign, minus);
+        $crate::number::int::ops!(@assign $t, MulAssign, mul_assign, times);
+    };
+    (@two $t:ty, $tr:ident, $f:ident, $m:ident) => {
+        impl $tr<&$t> for &$t {
+            type Output = $t;
+            #[inline]
+            fn $f(self, o: &$t) -> $t {
+                self.$m(o)
+            }
+        }
+        impl $tr<$t> for $t {
+            type Output = $t;
+            #[inline]
+            fn $f(self, o: $t) -> $t {
+                self.$m(&o)
+            }
+        }
+        impl $tr<&$t> for $t {
+            type Output = $t;
+            #[inline]
+            fn $f(self, o: &$t) -> $t {
+                self.$m(o)
+            }
+        }
+        impl $tr<$t> for &$t {
+            type Output = $t;
+            #[inline]
+            fn $f(self, o: $t) -> $t {
+                self.$m(&o)
+            }
+        }
+    };
+    (@assign $t:ty, $tr:ident, $f:ident, $m:ident) => {
+        impl $tr<&$t> for $t {
+            #[inline]
+            fn $f(&mut self, o: &$t) {
+                *self = self.$m(o);
+            }
+        }
+        impl $tr<$t> for $t {
+            #[inline]
+            fn $f(&mut self, o: $t) {
+                *self = self.$m(&o);
+            }
+        }
+    };
+}
 pub(crate) use ops;
 ops!(Int);
-#[allow(dead_code)]
-fn _o(_: Ordering) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn size_stays_two_registers_and_a_tag() {
+        assert!(
+            std::mem::size_of::<Int>() <= 48,
+            "{}",
+            std::mem::size_of::<Int>()
+        );
+    }
+
+    #[test]
+    fn canonical_at_the_border() {
+        let max = Int::from(i128::MAX);
+        let over = &max + &Int::one();
+        assert_eq!(over.to_i128(), None);
+        assert_eq!(&over - &Int::one(), max);
+        assert_eq!(-&over, Int::from(i128::MIN));
+        assert_eq!(-&Int::from(i128::MIN), over);
+        assert_eq!(Int::from(i128::MIN).abs(), over);
+        assert_eq!(Int::from(i128::MIN).div_exact(&Int::from(-1i64)), over);
+        assert_eq!(
+            Int::from(i128::MIN).div_rem_floor(&Int::from(-1i64)),
+            (over.clone(), Int::zero())
+        );
+        assert_eq!(
+            Int::from(i64::MIN).div_exact(&Int::from(-1i64)),
+            -Int::from(i64::MIN)
+        );
+        assert_eq!(
+            Int::from(i64::MIN).div_rem_floor(&Int::from(-1i64)).0,
+            -Int::from(i64::MIN)
+        );
+        assert_eq!(Int::from(i128::MIN).bits(), 128);
+        assert_eq!(Int::one().shl(127), over);
+        assert_eq!((-Int::one()).shl(127), Int::from(i128::MIN));
+        assert_eq!((-Int::one()).shl(200).shr(201), -Int::one());
+        assert_eq!(
+            (-(Int::one().shl(200) + Int::one())).shr(200),
+            Int::from(-2i64)
+        );
+        assert!(Int::from(i128::MIN) < max && max < over && -&over.shl(1) < Int::from(i128::MIN));
+    }
+
+    #[test]
+    fn gcds_of_all_sizes() {
+        let g = Int::from(600_851_475_143i64);
+        for k in [1u32, 3, 8, 20] {
+            let (a, b) = (
+                &g.pow(k) * &Int::from(7i64).pow(90),
+                &g.pow(k) * &Int::from(-5i64).pow(81),
+            );
+            assert_eq!(a.gcd(&b), g.pow(k), "{k}");
+        }
+        assert_eq!(Int::zero().gcd(&Int::from(i128::MIN)), Int::one().shl(127));
+        assert_eq!(Int::one().shl(300).gcd(&Int::from(96i64)), Int::from(32i64));
+        assert_eq!(Int::zero().gcd(&Int::zero()), Int::zero());
+    }
+
+    #[test]
+    fn squares() {
+        for v in 0i64..5000 {
+            let r = Int::from(v).sqrt_exact();
+            assert_eq!(r.is_some(), (v as f64).sqrt().fract() == 0.0, "{v}");
+        }
+        let big = Int::from(12345i64).pow(30);
+        assert_eq!((&big * &big).sqrt_exact(), Some(big.clone()));
+        assert_eq!((&big * &big + Int::one()).sqrt_exact(), None);
+        assert_eq!(Int::from(-4i64).sqrt(), None);
+    }
+
+    #[test]
+    fn reading_is_strict() {
+        for bad in ["", "+", "-", "1_0", " 1", "1 ", "0x1", "+-1", "--1", "1.0"] {
+            assert!(bad.parse::<Int>().is_err(), "{bad:?}");
+        }
+        let nines = "9".repeat(60);
+        assert_eq!(
+            format!("-{nines}").parse::<Int>().map(|v| v.to_string()),
+            Ok(format!("-{nines}"))
+        );
+        assert_eq!("+07".parse::<Int>(), Ok(Int::from(7i64)));
+    }
+}

@@ -3,9 +3,12 @@
 //! big-number crate by name.
 
 mod algebraic;
+mod factor;
 mod int;
 mod interval;
+mod isolate;
 pub mod literal;
+mod modular;
 mod poly;
 mod rat;
 
