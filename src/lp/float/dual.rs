@@ -8,14 +8,17 @@ use super::engine::{Ending, Engine, PIVOT, TOLERANCE};
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Exhausted};
 
+/// Infeasibility that is no accident of rounding.
+const CLEAR: f64 = 1e-6;
+
 impl Engine<'_> {
     /// Makes the working costs dual feasible: boxed variables move to their other bound, the
     /// costs of the others are shifted, and all are perturbed if asked.
     fn make_dual_feasible(&mut self, perturb: bool) {
         let p = self.program;
         for v in 0..self.status.len() {
-            let boxed = p.lower[v] > f64::NEG_INFINITY && p.upper[v] < f64::INFINITY;
-            if self.status[v] == Status::Basic || p.lower[v] == p.upper[v] {
+            let boxed = self.lower[v] > f64::NEG_INFINITY && self.upper[v] < f64::INFINITY;
+            if self.status[v] == Status::Basic || self.lower[v] == self.upper[v] {
                 continue;
             }
             if boxed {
@@ -70,7 +73,7 @@ impl Engine<'_> {
             let mut leaving = None;
             for (k, &v) in self.head.iter().enumerate() {
                 let e = self.excess(v);
-                if e.abs() > TOLERANCE {
+                if e.abs() > TOLERANCE && weights[k] < 1e90 {
                     let score = e * e / weights[k];
                     if score > best {
                         best = score;
@@ -85,7 +88,7 @@ impl Engine<'_> {
                 self.refactor();
                 self.compute_values();
                 self.compute_reduced();
-                if self.infeasibility() == 0.0 {
+                if self.infeasibility() == 0.0 || weights.iter().any(|w| *w > 1e90) {
                     return Ok(Ending::Optimal);
                 }
                 continue;
@@ -98,7 +101,7 @@ impl Engine<'_> {
             candidates.clear();
             for &v in &touched {
                 let j = v as usize;
-                if self.status[j] == Status::Basic || p.lower[j] == p.upper[j] {
+                if self.status[j] == Status::Basic || self.lower[j] == self.upper[j] {
                     continue;
                 }
                 let a = side * alpha[j];
@@ -124,7 +127,7 @@ impl Engine<'_> {
                 for &v in &candidates {
                     let j = v as usize;
                     if self.ratio(j, alpha[j], side) <= limit {
-                        group_slope += alpha[j].abs() * (p.upper[j] - p.lower[j]);
+                        group_slope += alpha[j].abs() * (self.upper[j] - self.lower[j]);
                         if pick.is_none_or(|b| alpha[j].abs() > alpha[b].abs()) {
                             pick = Some(j);
                         }
@@ -158,7 +161,11 @@ impl Engine<'_> {
                     self.compute_reduced();
                     continue;
                 }
-                return Ok(Ending::Infeasible);
+                if excess.abs() > CLEAR {
+                    return Ok(Ending::Infeasible);
+                }
+                weights[r] = 1e100; // too little to tell: exact arithmetic will
+                continue;
             };
             // If everything could be flipped without ending the slope, the row is infeasible.
             if candidates.is_empty() && slope > TOLERANCE && flips.contains(&(q as u32)) {
@@ -168,7 +175,11 @@ impl Engine<'_> {
                     self.compute_reduced();
                     continue;
                 }
-                return Ok(Ending::Infeasible);
+                if slope > CLEAR {
+                    return Ok(Ending::Infeasible);
+                }
+                weights[r] = 1e100;
+                continue;
             }
             flips.retain(|&v| v as usize != q);
             let column = self.column(q);
@@ -197,8 +208,8 @@ impl Engine<'_> {
                 for &v in &flips {
                     let j = v as usize;
                     let (to, place) = match self.status[j] {
-                        Status::Lower => (p.upper[j], Status::Upper),
-                        _ => (p.lower[j], Status::Lower),
+                        Status::Lower => (self.upper[j], Status::Upper),
+                        _ => (self.lower[j], Status::Lower),
                     };
                     let change = to - self.x[j];
                     self.x[j] = to;
@@ -209,7 +220,7 @@ impl Engine<'_> {
                 for (k, &v) in self.head.iter().enumerate() {
                     self.x[v] -= b[k];
                 }
-                excess = self.x[out] - if side > 0.0 { p.upper[out] } else { p.lower[out] };
+                excess = self.x[out] - if side > 0.0 { self.upper[out] } else { self.lower[out] };
             }
             // Dual step; a wrong sign left by the tolerance is shifted into the costs.
             let mut step = self.d[q] / alpha[q];
@@ -225,7 +236,7 @@ impl Engine<'_> {
                 }
                 self.d[j] -= step * alpha[j];
                 let wrong = match self.status[j] {
-                    _ if p.lower[j] == p.upper[j] => false,
+                    _ if self.lower[j] == self.upper[j] => false,
                     Status::Lower => self.d[j] < -TOLERANCE,
                     Status::Upper => self.d[j] > TOLERANCE,
                     _ => false,
@@ -257,10 +268,10 @@ impl Engine<'_> {
             self.x[q] += move_by;
             if side > 0.0 {
                 self.status[out] = Status::Upper;
-                self.x[out] = p.upper[out];
+                self.x[out] = self.upper[out];
             } else {
                 self.status[out] = Status::Lower;
-                self.x[out] = p.lower[out];
+                self.x[out] = self.lower[out];
             }
             self.exchange(r, q, &column);
         }

@@ -37,6 +37,9 @@ pub(crate) struct Engine<'a> {
     pub(crate) program: &'a Program,
     /// Working costs of all variables (logicals have zero but for shifts).
     pub(crate) cost: Vec<f64>,
+    /// Working bounds: the program's, but for a while under perturbation.
+    pub(crate) lower: Vec<f64>,
+    pub(crate) upper: Vec<f64>,
     pub(crate) status: Vec<Status>,
     /// Basic variable at each position.
     pub(crate) head: Vec<usize>,
@@ -57,6 +60,8 @@ impl<'a> Engine<'a> {
         let mut engine = Engine {
             program,
             cost,
+            lower: program.lower.clone(),
+            upper: program.upper.clone(),
             status,
             head: Vec::new(),
             x: vec![0.0; program.n + program.m],
@@ -105,7 +110,7 @@ impl<'a> Engine<'a> {
         }
         while self.head.len() > m {
             if let Some(v) = self.head.pop() {
-                self.status[v] = rest(self.program.lower[v], self.program.upper[v]);
+                self.status[v] = rest(self.lower[v], self.upper[v]);
             }
         }
     }
@@ -131,7 +136,7 @@ impl<'a> Engine<'a> {
                 Err(left) => {
                     for (&k, &i) in left.columns.iter().zip(&left.rows) {
                         let v = self.head[k as usize];
-                        self.status[v] = rest(self.program.lower[v], self.program.upper[v]);
+                        self.status[v] = rest(self.lower[v], self.upper[v]);
                         let logical = self.program.n + i as usize;
                         self.head[k as usize] = logical;
                         self.status[logical] = Status::Basic;
@@ -172,6 +177,8 @@ impl<'a> Engine<'a> {
     }
 
     /// Values of everything from the resting places.
+    ///
+    /// One step of refinement makes them as accurate as doubles can show them.
     pub(crate) fn compute_values(&mut self) {
         let p = self.program;
         let mut b = vec![0.0; p.m];
@@ -180,8 +187,8 @@ impl<'a> Engine<'a> {
                 continue;
             }
             let value = match self.status[v] {
-                Status::Lower => p.lower[v],
-                Status::Upper => p.upper[v],
+                Status::Lower => self.lower[v],
+                Status::Upper => self.upper[v],
                 _ => 0.0,
             };
             self.x[v] = value;
@@ -189,9 +196,15 @@ impl<'a> Engine<'a> {
                 p.each(v, |i, a| b[i] -= a * value);
             }
         }
+        let mut residual = b.clone();
         self.ftran(&mut b);
         for (k, &v) in self.head.iter().enumerate() {
             self.x[v] = b[k];
+            p.each(v, |i, a| residual[i] -= a * b[k]);
+        }
+        self.ftran(&mut residual);
+        for (k, &v) in self.head.iter().enumerate() {
+            self.x[v] += residual[k];
         }
     }
 
@@ -290,10 +303,10 @@ impl<'a> Engine<'a> {
     /// How far a basic variable is outside: negative below, positive above.
     pub(crate) fn excess(&self, v: usize) -> f64 {
         let x = self.x[v];
-        if x < self.program.lower[v] {
-            x - self.program.lower[v]
-        } else if x > self.program.upper[v] {
-            x - self.program.upper[v]
+        if x < self.lower[v] {
+            x - self.lower[v]
+        } else if x > self.upper[v] {
+            x - self.upper[v]
         } else {
             0.0
         }
@@ -301,7 +314,7 @@ impl<'a> Engine<'a> {
 
     /// Whether a resting variable would improve, beyond the tolerance.
     pub(crate) fn attractive(&self, v: usize) -> bool {
-        if self.program.lower[v] == self.program.upper[v] {
+        if self.lower[v] == self.upper[v] {
             return false;
         }
         match self.status[v] {
@@ -312,35 +325,49 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// Dual and primal in turn until both agree that the basis is optimal, or give up.
-    pub(crate) fn optimise(&mut self, budget: &Budget) -> Result<Ending, Exhausted> {
+    /// The program's own costs and bounds, and everything that follows from the basis.
+    fn restore(&mut self) {
+        self.cost.truncate(self.program.n);
+        self.cost.copy_from_slice(&self.program.cost);
+        self.cost.resize(self.program.n + self.program.m, 0.0);
+        self.lower.copy_from_slice(&self.program.lower);
+        self.upper.copy_from_slice(&self.program.upper);
         self.refactor();
-        for round in 0..8 {
-            self.cost.truncate(self.program.n);
-            self.cost.copy_from_slice(&self.program.cost);
-            self.cost.resize(self.program.n + self.program.m, 0.0);
-            self.compute_values();
-            self.compute_reduced();
+        self.compute_values();
+        self.compute_reduced();
+    }
+
+    /// Widens the bounds of all variables by random amounts, against stalling.
+    pub(crate) fn perturb_bounds(&mut self) {
+        for v in 0..self.status.len() {
+            if self.lower[v] == self.upper[v] {
+                continue;
+            }
+            let (a, b) = (self.next_random(), self.next_random());
+            self.lower[v] -= (0.5 + 0.5 * a) * 1e-7 * (1.0 + self.lower[v].abs());
+            self.upper[v] += (0.5 + 0.5 * b) * 1e-7 * (1.0 + self.upper[v].abs());
+        }
+        self.compute_values();
+    }
+
+    /// Dual and primal in turn until both agree that the basis is optimal, or give up.
+    /// `cold` perturbs the costs in the dual method.
+    pub(crate) fn optimise(&mut self, cold: bool, budget: &Budget) -> Result<Ending, Exhausted> {
+        for round in 0..10 {
+            self.restore();
             if self.infeasibility() > 0.0 {
-                match self.dual(budget, round < 4)? {
+                match self.dual(budget, cold && round < 4 || round % 2 == 1)? {
                     Ending::Optimal => {}
                     other => return Ok(other),
                 }
-                self.cost.truncate(self.program.n);
-                self.cost.copy_from_slice(&self.program.cost);
-                self.cost.resize(self.program.n + self.program.m, 0.0);
-                self.refactor();
-                self.compute_values();
-                self.compute_reduced();
+                self.restore();
             }
-            if (0..self.status.len()).any(|v| self.attractive(v)) {
+            if self.infeasibility() < 1e-4 && (0..self.status.len()).any(|v| self.attractive(v)) {
                 match self.primal(budget)? {
                     Ending::Optimal => {}
                     other => return Ok(other),
                 }
-                self.refactor();
-                self.compute_values();
-                self.compute_reduced();
+                self.restore();
             }
             let settled = !(0..self.status.len()).any(|v| self.attractive(v));
             if settled && self.infeasibility() == 0.0 {

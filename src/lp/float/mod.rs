@@ -8,8 +8,9 @@
 
 pub(crate) mod dual;
 pub(crate) mod engine;
+pub(crate) mod interior;
 pub(crate) mod primal;
 pub(crate) mod program;
 
-pub(crate) use engine::{Engine, Ending};
+pub(crate) use engine::Engine;
 pub(crate) use program::Program;

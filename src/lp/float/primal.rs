@@ -1,5 +1,5 @@
 //! The bounded primal simplex method in doubles from a feasible basis: reference-framework
-//! pricing, Harris's two-pass ratio test.
+//! pricing, Harris's two-pass ratio test, widened bounds when it stalls.
 
 use super::engine::{Ending, Engine, PIVOT, TOLERANCE};
 use crate::lp::basis::Status;
@@ -16,12 +16,17 @@ impl Engine<'_> {
         let mut banned = vec![false; total];
         let mut any_banned = false;
         let mut count = 0u64;
+        let (mut stalled, mut perturbed) = (0, false);
         loop {
             if self.stale() {
                 self.refactor();
                 self.compute_values();
                 self.compute_reduced();
                 budget.check()?;
+            }
+            if stalled > 50 && !perturbed {
+                self.perturb_bounds();
+                perturbed = true;
             }
             count += 1;
             if count > 20 * (total as u64 + 1000) {
@@ -61,9 +66,9 @@ impl Engine<'_> {
             // First pass: the longest step that stays within the tolerance.
             let slack = |v: usize, rate: f64| {
                 let room = if rate > 0.0 {
-                    p.upper[v] - self.x[v]
+                    self.upper[v] - self.x[v]
                 } else {
-                    self.x[v] - p.lower[v]
+                    self.x[v] - self.lower[v]
                 };
                 room.max(-TOLERANCE)
             };
@@ -89,16 +94,16 @@ impl Engine<'_> {
                     }
                 }
             }
-            let width = p.upper[q] - p.lower[q];
+            let width = self.upper[q] - self.lower[q];
             let step = chosen.map_or(f64::INFINITY, |c| c.1);
             if width <= step && width < f64::INFINITY {
                 for (k, &v) in self.head.iter().enumerate() {
                     self.x[v] -= sign * width * column[k];
                 }
                 (self.status[q], self.x[q]) = if sign > 0.0 {
-                    (Status::Upper, p.upper[q])
+                    (Status::Upper, self.upper[q])
                 } else {
-                    (Status::Lower, p.lower[q])
+                    (Status::Lower, self.lower[q])
                 };
                 self.iterations += 1;
                 continue;
@@ -145,11 +150,12 @@ impl Engine<'_> {
                 self.x[v] -= sign * step * column[k];
             }
             self.x[q] += sign * step;
+            stalled = if step < 1e-12 { stalled + 1 } else { 0 };
             let rate = -sign * column[r];
             (self.status[out], self.x[out]) = if rate > 0.0 {
-                (Status::Upper, p.upper[out])
+                (Status::Upper, self.upper[out])
             } else {
-                (Status::Lower, p.lower[out])
+                (Status::Lower, self.lower[out])
             };
             self.exchange(r, q, &column);
         }
