@@ -3,6 +3,7 @@
 //!
 //! `lp_table [--exact] [--limit SECONDS] FILE…`
 
+use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{Method, Options, Outcome, read_model, solve};
 use std::path::Path;
 use std::time::Duration;
@@ -36,8 +37,18 @@ fn row(path: &Path, options: &Options) {
     let read = cpu() - start;
     let outcome = solve(&model, options);
     let total = cpu() - start;
+    let start = cpu();
+    let proof = match Claim::of(&outcome).map(|c| verify(&model, &c)) {
+        Some(Ok(())) => "proven",
+        Some(Err(e)) => {
+            println!("{e}");
+            "REJECTED"
+        }
+        None => "unproven",
+    };
+    let checking = cpu() - start;
     println!(
-        "{:<24} {:<10} {:<8} float {:>6} exact {:>4} read {read:.3} total {total:.3}",
+        "{:<24} {:<10} {:<8} {proof} float {:>6} exact {:>4} read {read:.3} total {total:.3} check {checking:.3}",
         path.file_name().unwrap_or_default().to_string_lossy().trim_end_matches(".mps.gz"),
         outcome.status.word(),
         agreement(path, &outcome),

@@ -1,5 +1,6 @@
 //! snapfit predicts, exactly, the motion of planar mechanisms that click.
 
+pub mod certificate;
 pub mod contact;
 pub mod geometry;
 pub mod lp;

@@ -117,17 +117,29 @@ impl Kernel {
         if let Some(d) = guess {
             let extra = (self.norm_bits.max(rhs_bits) / 57) as usize;
             let digits = (d.bits() / 56) as usize + 2 * extra + PRECISION + 2;
+            let t = std::time::Instant::now(); // TRACE
             lift.extend(digits, budget)?;
             if let Some(s) = lift.prove(d) {
+                if std::env::var_os("LP_TRACE").is_some() { eprintln!("lift {side:?} guess ok {digits} {:.3}", t.elapsed().as_secs_f64()); } // TRACE
                 return Ok(s);
             }
         }
         let mut digits = lift.digits.len().max(2);
         let mut salt = 0;
+        let trace = std::env::var_os("LP_TRACE").is_some(); // TRACE
+        let (mut t_ext, mut t_den) = (0.0, 0.0); // TRACE
         loop {
+            let t = std::time::Instant::now(); // TRACE
             lift.extend(digits, budget)?;
-            if let Some(d) = lift.denominator(salt) {
-                if let Some(s) = lift.prove(&d) {
+            t_ext += t.elapsed().as_secs_f64(); // TRACE
+            let t = std::time::Instant::now(); // TRACE
+            let den = lift.denominator(salt);
+            t_den += t.elapsed().as_secs_f64(); // TRACE
+            if let Some(d) = den {
+                let t = std::time::Instant::now(); // TRACE
+                let proof = lift.prove(&d);
+                if trace { eprintln!("lift {side:?} n {} lu {} digits {digits} den bits {} extend {t_ext:.3} denominator {t_den:.3} prove {:.3} {}", self.size(), self.lu.entries(), d.bits(), t.elapsed().as_secs_f64(), proof.is_some()); } // TRACE
+                if let Some(s) = proof {
                     return Ok(s);
                 }
             }
@@ -346,7 +358,9 @@ impl<'a> Lifting<'a> {
             if count > self.digits.len() {
                 return None;
             }
-            let width = (margin + PRECISION + extra).min(count);
+            // Long denominators come with values that fall off far: look deeper.
+            let precision = PRECISION + d.bits() as usize / (24 * bits);
+            let width = (margin + precision + extra).min(count);
             let solution = Solution::new(&self.p, &self.digits, d, count, width, norm);
             if let Some(mut s) = solution {
                 self.digits.truncate(count);
@@ -404,6 +418,7 @@ pub(crate) struct Solution {
     digits: Vec<Vec<u64>>,
     /// D > 0.
     pub(crate) denominator: Int,
+    denominator_digits: Vec<u64>,
     /// Digits below the window.
     low: usize,
     /// ⌊Nⱼ/p^low⌋ less at most `error`.
@@ -471,6 +486,7 @@ impl Solution {
             p: p.clone(),
             digits: Vec::new(),
             denominator: d.clone(),
+            denominator_digits: d_digits,
             low,
             window,
             error,
@@ -487,6 +503,7 @@ impl Solution {
             prime: p,
             digits: Vec::new(),
             denominator: Int::one(),
+            denominator_digits: vec![1],
             low: 0,
             window: Vec::new(),
             error: Int::zero(),
@@ -512,6 +529,15 @@ impl Solution {
         (sum, slack * (&self.error + &Int::one()) + constant.abs() + Int::one())
     }
 
+    /// Bounds on |Σ a·x − c|, in a unit common to all questions to this solution.
+    pub(crate) fn size(&self, terms: &[(u32, Int)], constant: &Int) -> (Int, Int) {
+        let (value, off) = self.estimate(terms, constant);
+        let size = value.abs();
+        let low = &size - &off;
+        let low = if low.sign() < 0 { Int::zero() } else { low };
+        (low, size + off)
+    }
+
     /// The sign of Σ a·x − c.
     pub(crate) fn sign(&self, terms: &[(u32, Int)], constant: &Int) -> i32 {
         if terms.is_empty() {
@@ -524,7 +550,45 @@ impl Solution {
         if self.is_zero(terms, constant) {
             return 0;
         }
-        self.numerator(terms, constant).sign()
+        self.sign_by_wider_windows(terms, constant)
+    }
+
+    /// The sign of a non-zero Σ a·x − c that is too small for the stored windows: the digits of
+    /// that one number, and windows of its product with D that reach down until they tell.
+    fn sign_by_wider_windows(&self, terms: &[(u32, Int)], constant: &Int) -> i32 {
+        let count = self.digits.len();
+        let d = &self.denominator_digits;
+        if d.len() > 8000 {
+            return self.numerator(terms, constant).sign();
+        }
+        let constants = digits_of(constant, &self.p);
+        let mut carry = Int::zero();
+        let mut digits = Vec::with_capacity(count);
+        for (k, x) in self.digits.iter().enumerate() {
+            carry -= &Int::from(constants.get(k).copied().unwrap_or(0));
+            for (j, a) in terms {
+                carry += &(a * &Int::from(x[*j as usize]));
+            }
+            let (q, r) = carry.div_rem_floor(&self.p);
+            digits.push(r.to_i64().unwrap_or(0) as u64);
+            carry = q;
+        }
+        let mut width = 2 * (count - self.low);
+        loop {
+            let low = count.saturating_sub(width);
+            let sums: Vec<Int> = (low..count)
+                .map(|t| {
+                    let pairs = d.iter().enumerate().take(t + 1);
+                    let products = pairs.map(|(i, &d)| u128::from(d) * u128::from(digits[t - i]));
+                    from_u128(products.sum())
+                })
+                .collect();
+            let v = nearest(&compose(&sums, &self.p), &self.p.pow((count - low) as u32));
+            if low == 0 || v.bits() > 57 + 64 {
+                return v.sign();
+            }
+            width *= 2;
+        }
     }
 
     /// Whether Σ a·x = c: the residue modulo pᴷ is zero, digit by digit.

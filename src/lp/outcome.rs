@@ -204,14 +204,16 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
             out.objective = Some(objective);
             let lengths = frame.kernel.size() as u64
                 * (values.solution.denominator.bits() + duals.solution.denominator.bits());
-            if want_values || lengths <= VECTOR_BITS {
+            // The short form is checked in single words.
+            let vectors = lengths <= VECTOR_BITS || p.columns.limbs > 1;
+            if want_values || vectors {
                 let primal = point(frame, values);
                 let dual = prices(frame, duals, &p.cost_scale);
                 if want_values {
                     out.values = Some((0..p.n).map(|j| primal.value(j)).collect());
                     out.prices = Some((0..p.m).map(|i| dual.value(i)).collect());
                 }
-                if lengths <= VECTOR_BITS {
+                if vectors {
                     out.certificate = Some(Certificate::Optimal { primal, dual });
                 }
             }
@@ -236,8 +238,14 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
                             )
                         })
                         .collect(),
-                    primal_denominator: values.solution.denominator.clone(),
-                    dual_denominator: duals.solution.denominator.clone(),
+                    primal_denominator: with_contents(
+                        &(&values.solution.denominator * &p.bound_scale),
+                        frame.kernel.columns.iter().map(|&j| p.column_scale[j as usize].denom()),
+                    ),
+                    dual_denominator: with_contents(
+                        &(&duals.solution.denominator * &p.cost_scale.abs()),
+                        frame.kernel.rows.iter().map(|&i| p.row_scale[i as usize].denom()),
+                    ),
                 });
             }
         }
@@ -285,6 +293,19 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
         }
     }
     out
+}
+
+/// d times the least common multiple of the contents that scaling took out.
+fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
+    let one = Int::one();
+    let common = contents.fold(one.clone(), |l, c| {
+        if *c == one || *c == l {
+            return l;
+        }
+        let g = l.gcd(c);
+        &l * &c.div_exact(&g)
+    });
+    d * &common
 }
 
 /// Values of the columns, unscaled.

@@ -106,9 +106,12 @@ fn step<'a>(
         .basics()
         .map(|v| (v, breach(&frame, &values, v)))
         .collect();
+    if std::env::var_os("LP_TRACE").is_some() { eprintln!("breaches {}", breaches.iter().filter(|b| b.1 != Breach::None).count()); } // TRACE
     let infeasible = breaches.iter().any(|b| b.1 != Breach::None);
     let duals = frame.price(|v| cost(p, v), guesses[0].as_ref(), budget)?;
+    let t = std::time::Instant::now(); // TRACE
     let improving = entering(&frame, &duals, bland);
+    if std::env::var_os("LP_TRACE").is_some() { eprintln!("breaches entering {:?} {:.3}", improving, t.elapsed().as_secs_f64()); } // TRACE
     if !infeasible {
         let Some((q, sign)) = improving else {
             return Ok(Step::Done(Verdict::Optimal {
@@ -192,22 +195,29 @@ fn entering(frame: &Frame<'_>, duals: &RowVector, bland: bool) -> Option<(usize,
     best.map(|b| (b.0, b.1))
 }
 
-/// A non-negative ratio of two exact numbers known by their queries.
+/// A non-negative ratio of two exact numbers, first by enclosures, in full where they tie.
 struct Ratio<'q> {
     variable: usize,
+    /// A missing query is an exact zero.
     top: (&'q dyn Exact, Option<Query>),
     bottom: (&'q dyn Exact, Query),
-    estimate: Option<(Int, Int)>,
+    /// (low, high) of both.
+    enclosure: ((Int, Int), (Int, Int)),
+    full: Option<(Int, Int)>,
 }
 
 /// What a ratio needs of its vectors.
 trait Exact {
     fn exact(&self, q: &Query) -> Int;
+    fn enclose(&self, q: &Query) -> (Int, Int);
 }
 
 impl Exact for ColumnVector {
     fn exact(&self, q: &Query) -> Int {
         self.numerator(q)
+    }
+    fn enclose(&self, q: &Query) -> (Int, Int) {
+        self.solution.size(&q.terms, &q.constant)
     }
 }
 
@@ -215,25 +225,64 @@ impl Exact for RowVector {
     fn exact(&self, q: &Query) -> Int {
         self.numerator(q)
     }
-}
-
-impl Ratio<'_> {
-    /// |top| and |bottom| in full; a missing top is zero.
-    fn full(&mut self) -> &(Int, Int) {
-        let top = match &self.top.1 {
-            Some(q) => self.top.0.exact(q).abs(),
-            None => Int::zero(),
-        };
-        let bottom = &self.bottom;
-        self.estimate
-            .get_or_insert_with(|| (top, bottom.0.exact(&bottom.1).abs()))
+    fn enclose(&self, q: &Query) -> (Int, Int) {
+        self.solution.size(&q.terms, &q.constant)
     }
 }
 
-/// Least ratio, ties by least variable; whether it is zero.
-fn least<'q>(ratios: Vec<Ratio<'q>>) -> Option<Ratio<'q>> {
+impl<'q> Ratio<'q> {
+    fn new(
+        variable: usize,
+        top: (&'q dyn Exact, Option<Query>),
+        bottom: (&'q dyn Exact, Query),
+    ) -> Ratio<'q> {
+        let high = match &top.1 {
+            Some(q) => top.0.enclose(q),
+            None => (Int::zero(), Int::zero()),
+        };
+        Ratio {
+            variable,
+            enclosure: (high, bottom.0.enclose(&bottom.1)),
+            top,
+            bottom,
+            full: None,
+        }
+    }
+
+    /// |top| and |bottom| in full.
+    fn full(&mut self) -> &(Int, Int) {
+        let (top, bottom) = (&self.top, &self.bottom);
+        self.full.get_or_insert_with(|| {
+            let high = match &top.1 {
+                Some(q) => top.0.exact(q).abs(),
+                None => Int::zero(),
+            };
+            (high, bottom.0.exact(&bottom.1).abs())
+        })
+    }
+
+    fn compare(&mut self, other: &mut Ratio<'q>) -> Ordering {
+        {
+            let ((a, b), (c, d)) = &self.enclosure;
+            let ((e, f), (g, h)) = &other.enclosure;
+            // [a, b]/[c, d] against [e, f]/[g, h]
+            if b * h < e * c {
+                return Ordering::Less;
+            }
+            if f * d < a * g {
+                return Ordering::Greater;
+            }
+        }
+        let (n, d) = self.full().clone();
+        let (bn, bd) = other.full();
+        (&n * bd).cmp(&(bn * &d))
+    }
+}
+
+/// Least ratio, ties by least variable.
+fn least(ratios: Vec<Ratio<'_>>) -> Option<Ratio<'_>> {
     let zero = ratios.iter().any(|r| r.top.1.is_none());
-    let mut best: Option<Ratio<'q>> = None;
+    let mut best: Option<Ratio<'_>> = None;
     for mut r in ratios {
         if zero && r.top.1.is_some() {
             continue;
@@ -241,15 +290,11 @@ fn least<'q>(ratios: Vec<Ratio<'q>>) -> Option<Ratio<'q>> {
         let better = match &mut best {
             None => true,
             Some(b) if zero => r.variable < b.variable,
-            Some(b) => {
-                let (n, d) = r.full().clone();
-                let (bn, bd) = b.full();
-                match (&n * bd).cmp(&(bn * &d)) {
-                    Ordering::Less => true,
-                    Ordering::Equal => r.variable < b.variable,
-                    Ordering::Greater => false,
-                }
-            }
+            Some(b) => match r.compare(b) {
+                Ordering::Less => true,
+                Ordering::Equal => r.variable < b.variable,
+                Ordering::Greater => false,
+            },
         };
         if better {
             best = Some(r);
@@ -289,12 +334,7 @@ fn primal_step<'a>(
             let top = values.component(&frame, v).minus(bound);
             to_upper[v] = upper;
             let top = (values.sign(&top) != 0).then_some(top);
-            ratios.push(Ratio {
-                variable: v,
-                top: (&values, top),
-                bottom: (&direction, fall),
-                estimate: None,
-            });
+            ratios.push(Ratio::new(v, (&values, top), (&direction, fall)));
         }
     }
     let mut chosen = least(ratios);
@@ -398,12 +438,7 @@ fn dual_step<'a>(
         }
         let top = duals.reduced(&frame, v);
         let top = (duals.sign(&top) != 0).then_some(top);
-        ratios.push(Ratio {
-            variable: v,
-            top: (duals, top),
-            bottom: (&row, bottom),
-            estimate: None,
-        });
+        ratios.push(Ratio::new(v, (duals, top), (&row, bottom)));
     }
     let Some(chosen) = least(ratios) else {
         return Ok(Step::Done(Verdict::Infeasible { frame, prices: row }));

@@ -2,7 +2,7 @@
 
 use super::basis::Basis;
 use super::budget::Budget;
-use super::float::{Engine, Program, interior};
+use super::float;
 use super::model::Model;
 use super::outcome::{Certificate, Outcome, Status, conclude};
 use super::problem::Problem;
@@ -76,27 +76,9 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut start = Basis::slack(&problem);
     let mut iterations = 0;
     if options.method == Method::Warm {
-        let direct = Program::new(&problem);
-        let program = direct.dual().unwrap_or_else(|| direct.clone());
-        let t = std::time::Instant::now();
-        let ipm = std::env::var("LP_NOISE").ok().and_then(|s| s.parse::<f64>().ok());
-        let mut engine = match ipm.and_then(|n| interior::weights(&direct, n, budget)) {
-            Some(w) => {
-                eprintln!("interior {:.3}", t.elapsed().as_secs_f64());
-                Engine::new(&program, interior::heaviest(&program, &w))
-            }
-            None => Engine::slack(&program),
-        };
-        if std::env::var_os("LP_TRACE").is_some() {
-            engine.refactor(); engine.compute_values(); engine.compute_reduced();
-            eprintln!("start: infeasible {} {:.2e} attractive {}", engine.head.iter().filter(|v| engine.excess(**v).abs() > 1e-9).count(), engine.infeasibility(), (0..engine.status.len()).filter(|v| engine.attractive(*v)).count());
-        }
-        let ending = engine.optimise(ipm.is_none(), budget);
-        if std::env::var_os("LP_TRACE").is_some() {
-            eprintln!("float {ending:?} {} iterations {:.3}", engine.iterations, t.elapsed().as_secs_f64());
-        }
-        iterations = engine.iterations;
-        start = program.basis(&problem, &engine.status);
+        let proposal = float::propose(&problem, budget);
+        iterations = proposal.iterations;
+        start = proposal.basis;
     }
     let run = simplex::run(&problem, start, budget, &mut effort);
     let mut outcome = match run {

@@ -4,7 +4,7 @@
 //! Costs that make the start dual infeasible are shifted away; what that spoils the primal
 //! method puts right afterwards. An "infeasible" found here does not depend on costs at all.
 
-use super::engine::{Ending, Engine, PIVOT, TOLERANCE};
+use super::engine::{Ending, Engine, PIVOT};
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Exhausted};
 
@@ -15,16 +15,15 @@ impl Engine<'_> {
     /// Makes the working costs dual feasible: boxed variables move to their other bound, the
     /// costs of the others are shifted, and all are perturbed if asked.
     fn make_dual_feasible(&mut self, perturb: bool) {
-        let p = self.program;
         for v in 0..self.status.len() {
             let boxed = self.lower[v] > f64::NEG_INFINITY && self.upper[v] < f64::INFINITY;
             if self.status[v] == Status::Basic || self.lower[v] == self.upper[v] {
                 continue;
             }
             if boxed {
-                if self.d[v] > TOLERANCE {
+                if self.d[v] > self.tolerance {
                     self.status[v] = Status::Lower;
-                } else if self.d[v] < -TOLERANCE {
+                } else if self.d[v] < -self.tolerance {
                     self.status[v] = Status::Upper;
                 }
             }
@@ -56,6 +55,7 @@ impl Engine<'_> {
         let mut candidates: Vec<u32> = Vec::new();
         let mut flips: Vec<u32> = Vec::new();
         let mut troubles = 0;
+        let mut skipped: Vec<bool> = vec![false; p.m];
         let mut count = 0u64;
         loop {
             if self.stale() {
@@ -65,7 +65,7 @@ impl Engine<'_> {
                 budget.check()?;
             }
             count += 1;
-            if count > 50 * (total as u64 + 1000) {
+            if count > 50 * (total as u64 + 1000) || self.iterations > self.most {
                 return Ok(Ending::Stuck);
             }
             // Leaving: largest infeasibility by steepest edge.
@@ -73,7 +73,7 @@ impl Engine<'_> {
             let mut leaving = None;
             for (k, &v) in self.head.iter().enumerate() {
                 let e = self.excess(v);
-                if e.abs() > TOLERANCE && weights[k] < 1e90 {
+                if e.abs() > self.tolerance && !skipped[k] {
                     let score = e * e / weights[k];
                     if score > best {
                         best = score;
@@ -88,7 +88,7 @@ impl Engine<'_> {
                 self.refactor();
                 self.compute_values();
                 self.compute_reduced();
-                if self.infeasibility() == 0.0 || weights.iter().any(|w| *w > 1e90) {
+                if self.infeasibility() == 0.0 || skipped.contains(&true) {
                     return Ok(Ending::Optimal);
                 }
                 continue;
@@ -120,7 +120,7 @@ impl Engine<'_> {
             while !candidates.is_empty() {
                 let limit = candidates.iter().fold(f64::INFINITY, |t, &v| {
                     let j = v as usize;
-                    t.min((self.d[j].abs() + TOLERANCE) / alpha[j].abs())
+                    t.min((self.d[j].abs() + self.tolerance) / alpha[j].abs())
                 });
                 let mut group_slope = 0.0;
                 let mut pick: Option<usize> = None;
@@ -164,11 +164,11 @@ impl Engine<'_> {
                 if excess.abs() > CLEAR {
                     return Ok(Ending::Infeasible);
                 }
-                weights[r] = 1e100; // too little to tell: exact arithmetic will
+                skipped[r] = true; // too little to tell: exact arithmetic will
                 continue;
             };
             // If everything could be flipped without ending the slope, the row is infeasible.
-            if candidates.is_empty() && slope > TOLERANCE && flips.contains(&(q as u32)) {
+            if candidates.is_empty() && slope > self.tolerance && flips.contains(&(q as u32)) {
                 if !self.fresh() {
                     self.refactor();
                     self.compute_values();
@@ -178,7 +178,7 @@ impl Engine<'_> {
                 if slope > CLEAR {
                     return Ok(Ending::Infeasible);
                 }
-                weights[r] = 1e100;
+                skipped[r] = true;
                 continue;
             }
             flips.retain(|&v| v as usize != q);
@@ -197,10 +197,7 @@ impl Engine<'_> {
                     continue;
                 }
                 // Unreliable even with fresh factors: leave this row alone for a while.
-                weights[r] *= 1e6;
-                if weights[r] > 1e60 {
-                    return Ok(Ending::Stuck);
-                }
+                skipped[r] = true;
                 continue;
             }
             if !flips.is_empty() {
@@ -237,8 +234,8 @@ impl Engine<'_> {
                 self.d[j] -= step * alpha[j];
                 let wrong = match self.status[j] {
                     _ if self.lower[j] == self.upper[j] => false,
-                    Status::Lower => self.d[j] < -TOLERANCE,
-                    Status::Upper => self.d[j] > TOLERANCE,
+                    Status::Lower => self.d[j] < -self.tolerance,
+                    Status::Upper => self.d[j] > self.tolerance,
                     _ => false,
                 };
                 if wrong {
@@ -250,7 +247,7 @@ impl Engine<'_> {
             self.d[out] = -step;
             // Weights.
             let mut tau = rho;
-            let own = weights[r].max(tau.iter().map(|v| v * v).sum::<f64>());
+            let own = tau.iter().map(|v| v * v).sum::<f64>();
             self.ftran(&mut tau);
             for k in 0..p.m {
                 if k != r && column[k] != 0.0 {
@@ -260,6 +257,7 @@ impl Engine<'_> {
                 }
             }
             weights[r] = (own / (pivot * pivot)).max(1e-4);
+            skipped[r] = false;
             // Primal step.
             let move_by = excess / pivot;
             for (k, &v) in self.head.iter().enumerate() {

@@ -11,8 +11,8 @@ use crate::lp::lu::{Lu, factorise};
 
 /// Pivots between two factorisations.
 pub(crate) const REFRESH: usize = 64;
-/// Feasibility tolerance of values and of reduced costs.
-pub(crate) const TOLERANCE: f64 = 1e-9;
+/// Feasibility tolerances of values and of reduced costs: first, and for the finish.
+const TOLERANCES: [f64; 2] = [1e-9, 1e-12];
 /// Smallest pivot.
 pub(crate) const PIVOT: f64 = 1e-7;
 
@@ -50,6 +50,9 @@ pub(crate) struct Engine<'a> {
     work: Vec<f64>,
     pub(crate) iterations: u64,
     random: u64,
+    pub(crate) tolerance: f64,
+    /// Iterations after which a run gives up.
+    pub(crate) most: u64,
 }
 
 impl<'a> Engine<'a> {
@@ -71,6 +74,8 @@ impl<'a> Engine<'a> {
             work: Vec::new(),
             iterations: 0,
             random: 0x1234_5678_9abc_def1,
+            tolerance: TOLERANCES[0],
+            most: u64::MAX,
         };
         engine.collect_head();
         engine
@@ -134,6 +139,7 @@ impl<'a> Engine<'a> {
                     return;
                 }
                 Err(left) => {
+                    if std::env::var_os("LP_TRACE").is_some() { eprintln!("    repaired {} at it {}", left.rows.len(), self.iterations); } // TRACE
                     for (&k, &i) in left.columns.iter().zip(&left.rows) {
                         let v = self.head[k as usize];
                         self.status[v] = rest(self.lower[v], self.upper[v]);
@@ -297,7 +303,13 @@ impl<'a> Engine<'a> {
     /// Sum of primal infeasibilities beyond the tolerance.
     pub(crate) fn infeasibility(&self) -> f64 {
         let each = self.head.iter().map(|&v| self.excess(v).abs());
-        each.filter(|e| *e > TOLERANCE).sum()
+        each.filter(|e| *e > self.tolerance).sum()
+    }
+
+    /// The objective at the current values.
+    pub(crate) fn objective(&self) -> f64 {
+        let pairs = self.program.cost.iter().zip(&self.x);
+        pairs.map(|(c, x)| c * x).sum()
     }
 
     /// How far a basic variable is outside: negative below, positive above.
@@ -319,9 +331,9 @@ impl<'a> Engine<'a> {
         }
         match self.status[v] {
             Status::Basic => false,
-            Status::Lower => self.d[v] < -TOLERANCE,
-            Status::Upper => self.d[v] > TOLERANCE,
-            Status::Zero => self.d[v].abs() > TOLERANCE,
+            Status::Lower => self.d[v] < -self.tolerance,
+            Status::Upper => self.d[v] > self.tolerance,
+            Status::Zero => self.d[v].abs() > self.tolerance,
         }
     }
 
@@ -337,30 +349,58 @@ impl<'a> Engine<'a> {
         self.compute_reduced();
     }
 
-    /// Widens the bounds of all variables by random amounts, against stalling.
+    fn trace(&self, what: &str) { // TRACE
+        if std::env::var_os("LP_TRACE").is_some() { // TRACE
+            eprintln!("  {what}: it {} infeasible {:.2e} attractive {}", self.iterations, self.infeasibility(), (0..self.status.len()).filter(|v| self.attractive(*v)).count()); // TRACE
+        } // TRACE
+    } // TRACE
+
+    /// Widens the bounds of the basic variables by random amounts, against stalling. The
+    /// others stay where they are, so that the values keep.
     pub(crate) fn perturb_bounds(&mut self) {
-        for v in 0..self.status.len() {
-            if self.lower[v] == self.upper[v] {
+        for k in 0..self.head.len() {
+            let v = self.head[k];
+            if self.program.lower[v] == self.program.upper[v] {
                 continue;
             }
             let (a, b) = (self.next_random(), self.next_random());
-            self.lower[v] -= (0.5 + 0.5 * a) * 1e-7 * (1.0 + self.lower[v].abs());
-            self.upper[v] += (0.5 + 0.5 * b) * 1e-7 * (1.0 + self.upper[v].abs());
+            self.lower[v] -= (0.5 + 0.5 * a) * 1e-6 * (1.0 + self.lower[v].abs());
+            self.upper[v] += (0.5 + 0.5 * b) * 1e-6 * (1.0 + self.upper[v].abs());
         }
-        self.compute_values();
     }
 
     /// Dual and primal in turn until both agree that the basis is optimal, or give up.
     /// `cold` perturbs the costs in the dual method.
     pub(crate) fn optimise(&mut self, cold: bool, budget: &Budget) -> Result<Ending, Exhausted> {
-        for round in 0..10 {
+        self.tolerance = TOLERANCES[0];
+        let ending = self.rounds(cold, 10, budget)?;
+        if ending != Ending::Optimal {
+            return Ok(ending);
+        }
+        // The finish may lose itself in noise: then the basis stays as it was.
+        let before = (self.status.clone(), self.head.clone());
+        let most = self.most;
+        self.tolerance = TOLERANCES[1];
+        self.most = self.iterations + 100 + self.program.m as u64 / 20;
+        if self.rounds(false, 2, budget)? == Ending::Stuck {
+            (self.status, self.head) = before;
             self.restore();
+        }
+        self.most = most;
+        Ok(ending)
+    }
+
+    fn rounds(&mut self, cold: bool, most: u32, budget: &Budget) -> Result<Ending, Exhausted> {
+        for round in 0..most {
+            self.restore();
+            self.trace("round"); // TRACE
             if self.infeasibility() > 0.0 {
                 match self.dual(budget, cold && round < 4 || round % 2 == 1)? {
                     Ending::Optimal => {}
                     other => return Ok(other),
                 }
                 self.restore();
+                self.trace("after dual"); // TRACE
             }
             if self.infeasibility() < 1e-4 && (0..self.status.len()).any(|v| self.attractive(v)) {
                 match self.primal(budget)? {

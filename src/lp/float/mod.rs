@@ -11,6 +11,7 @@ pub(crate) mod engine;
 pub(crate) mod interior;
 pub(crate) mod primal;
 pub(crate) mod program;
+pub(crate) mod propose;
 
-pub(crate) use engine::Engine;
-pub(crate) use program::Program;
+pub(crate) use engine::Ending;
+pub(crate) use propose::propose;

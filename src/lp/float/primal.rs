@@ -1,7 +1,7 @@
 //! The bounded primal simplex method in doubles from a feasible basis: reference-framework
 //! pricing, Harris's two-pass ratio test, widened bounds when it stalls.
 
-use super::engine::{Ending, Engine, PIVOT, TOLERANCE};
+use super::engine::{Ending, Engine, PIVOT};
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Exhausted};
 
@@ -24,12 +24,12 @@ impl Engine<'_> {
                 self.compute_reduced();
                 budget.check()?;
             }
-            if stalled > 50 && !perturbed {
+            if stalled > 20 && !perturbed {
                 self.perturb_bounds();
                 perturbed = true;
             }
             count += 1;
-            if count > 20 * (total as u64 + 1000) {
+            if count > 20 * (total as u64 + 1000) || self.iterations > self.most {
                 return Ok(Ending::Stuck);
             }
             let mut best = 0.0;
@@ -70,13 +70,13 @@ impl Engine<'_> {
                 } else {
                     self.x[v] - self.lower[v]
                 };
-                room.max(-TOLERANCE)
+                room.max(-self.tolerance)
             };
             let mut limit = f64::INFINITY;
             for (k, &v) in self.head.iter().enumerate() {
                 let rate = -sign * column[k];
                 if rate.abs() > PIVOT * 1e-1 {
-                    limit = limit.min((slack(v, rate) + TOLERANCE) / rate.abs());
+                    limit = limit.min((slack(v, rate) + self.tolerance) / rate.abs());
                 }
             }
             // Second pass: the largest pivot among those that block before that.
@@ -117,7 +117,8 @@ impl Engine<'_> {
                 self.compute_reduced();
                 continue;
             };
-            if column[r].abs() < PIVOT {
+            let largest = column.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+            if column[r].abs() < PIVOT.max(largest * 1e-9) {
                 if self.fresh() {
                     banned[q] = true;
                     any_banned = true;
