@@ -49,7 +49,10 @@ fn row(path: &Path, options: &Options) {
     let checking = cpu() - start;
     println!(
         "{:<24} {:<10} {:<8} {proof} float {:>6} exact {:>4} read {read:.3} total {total:.3} check {checking:.3}",
-        path.file_name().unwrap_or_default().to_string_lossy().trim_end_matches(".mps.gz"),
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .trim_end_matches(".mps.gz"),
         outcome.status.word(),
         agreement(path, &outcome),
         outcome.float_iterations,
@@ -60,13 +63,21 @@ fn row(path: &Path, options: &Options) {
 /// CPU seconds of this thread where the system tells them, else 0.
 fn cpu() -> f64 {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let ns: f64 = text.split(' ').next().and_then(|s| s.parse().ok()).unwrap_or(0.0);
+    let ns: f64 = text
+        .split(' ')
+        .next()
+        .and_then(|s| s.parse().ok())
+        .unwrap_or(0.0);
     ns * 1e-9
 }
 
 /// Compares with `NAME.exact` or `truth.tsv` beside the model.
 fn agreement(path: &Path, outcome: &Outcome) -> &'static str {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_string();
+    let name = path
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_string();
     let name = name.trim_end_matches(".mps.gz");
     let folder = path.parent().unwrap_or(Path::new("."));
     let ours = outcome.objective.as_ref().map(ToString::to_string);

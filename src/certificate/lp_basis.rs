@@ -276,10 +276,7 @@ impl<'a> Check<'a> {
                 (vec![(self.column_step[v], 1)], Int::zero())
             } else {
                 let i = v - n;
-                (
-                    lines(&self.column_step, &self.rows[i]),
-                    -known[i].clone(),
-                )
+                (lines(&self.column_step, &self.rows[i]), -known[i].clone())
             };
             for upper in [false, true] {
                 if let Some(b) = self.bound(v, upper) {
@@ -319,11 +316,10 @@ impl<'a> Check<'a> {
             if self.place(v) == Place::Basic {
                 continue;
             }
-            if let (Some(l), Some(u)) = (self.bound(v, false), self.bound(v, true)) {
-                if l == u {
+            if let (Some(l), Some(u)) = (self.bound(v, false), self.bound(v, true))
+                && l == u {
                     continue;
                 }
-            }
             let sign = if v < n {
                 // c − a·Y, asked as −(a·Y − c)
                 -prices.sign::<Q>(&lines(&self.row_step, &self.columns[v]), &self.cost(v))
@@ -538,7 +534,8 @@ impl Digits {
                 }
                 digits.push(work.iter().map(|&v| v as u32).collect());
             }
-            let width = ((room / DIGIT + precision) as usize + 3 + (attempt as usize) * 4).min(count);
+            let width =
+                ((room / DIGIT + precision) as usize + 3 + (attempt as usize) * 4).min(count);
             if let Some(proven) = Digits::prove::<Q>(&digits, d, width, norm.max(rhs_bits)) {
                 return Ok(Digits { digits, ..proven });
             }

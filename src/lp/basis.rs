@@ -42,7 +42,9 @@ impl Basis {
             (0..problem.m as u32)
                 .filter(|&i| !basic(problem.n + i as usize))
                 .collect(),
-            (0..problem.n as u32).filter(|&j| basic(j as usize)).collect(),
+            (0..problem.n as u32)
+                .filter(|&j| basic(j as usize))
+                .collect(),
         )
     }
 

@@ -171,7 +171,10 @@ fn is_prime(n: u64) -> bool {
         }
         out
     };
-    let (twos, odd) = ((n - 1).trailing_zeros(), (n - 1) >> (n - 1).trailing_zeros());
+    let (twos, odd) = (
+        (n - 1).trailing_zeros(),
+        (n - 1) >> (n - 1).trailing_zeros(),
+    );
     [2u64, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37]
         .iter()
         .all(|&a| {
@@ -203,11 +206,16 @@ mod tests {
             assert!(f.p < 1 << 57 && f.p.wrapping_mul(f.inverse) == 1);
             let mut s = 12345u64;
             for _ in 0..1000 {
-                s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                s = s
+                    .wrapping_mul(6364136223846793005)
+                    .wrapping_add(1442695040888963407);
                 let (a, b) = (s % f.p, (s >> 7) % f.p);
                 let want = (u128::from(a) * u128::from(b) % u128::from(f.p)) as u64;
                 assert_eq!(f.mul(f.enter(a), b), want);
-                assert_eq!(f.reduce(u128::from(f.enter(a)) * u128::from(b) * 7), (u128::from(want) * 7 % u128::from(f.p)) as u64);
+                assert_eq!(
+                    f.reduce(u128::from(f.enter(a)) * u128::from(b) * 7),
+                    (u128::from(want) * 7 % u128::from(f.p)) as u64
+                );
                 if a != 0 {
                     assert_eq!(f.mul(f.invert(f.enter(a)), a), 1);
                 }

@@ -117,28 +117,17 @@ impl Kernel {
         if let Some(d) = guess {
             let extra = (self.norm_bits.max(rhs_bits) / 57) as usize;
             let digits = (d.bits() / 56) as usize + 2 * extra + PRECISION + 2;
-            let t = std::time::Instant::now(); // TRACE
             lift.extend(digits, budget)?;
             if let Some(s) = lift.prove(d) {
-                if std::env::var_os("LP_TRACE").is_some() { eprintln!("lift {side:?} guess ok {digits} {:.3}", t.elapsed().as_secs_f64()); } // TRACE
                 return Ok(s);
             }
         }
         let mut digits = lift.digits.len().max(2);
         let mut salt = 0;
-        let trace = std::env::var_os("LP_TRACE").is_some(); // TRACE
-        let (mut t_ext, mut t_den) = (0.0, 0.0); // TRACE
         loop {
-            let t = std::time::Instant::now(); // TRACE
             lift.extend(digits, budget)?;
-            t_ext += t.elapsed().as_secs_f64(); // TRACE
-            let t = std::time::Instant::now(); // TRACE
-            let den = lift.denominator(salt);
-            t_den += t.elapsed().as_secs_f64(); // TRACE
-            if let Some(d) = den {
-                let t = std::time::Instant::now(); // TRACE
+            if let Some(d) = lift.denominator(salt) {
                 let proof = lift.prove(&d);
-                if trace { eprintln!("lift {side:?} n {} lu {} digits {digits} den bits {} extend {t_ext:.3} denominator {t_den:.3} prove {:.3} {}", self.size(), self.lu.entries(), d.bits(), t.elapsed().as_secs_f64(), proof.is_some()); } // TRACE
                 if let Some(s) = proof {
                     return Ok(s);
                 }
@@ -526,7 +515,10 @@ impl Solution {
         if !constant.is_zero() {
             sum -= &(&self.denominator_high * constant);
         }
-        (sum, slack * (&self.error + &Int::one()) + constant.abs() + Int::one())
+        (
+            sum,
+            slack * (&self.error + &Int::one()) + constant.abs() + Int::one(),
+        )
     }
 
     /// Bounds on |Σ a·x − c|, in a unit common to all questions to this solution.
@@ -637,9 +629,9 @@ impl Solution {
             .digits
             .iter()
             .map(|x| {
-                terms.iter().fold(Int::zero(), |s, (j, a)| {
-                    s + a * &Int::from(x[*j as usize])
-                })
+                terms
+                    .iter()
+                    .fold(Int::zero(), |s, (j, a)| s + a * &Int::from(x[*j as usize]))
             })
             .collect();
         let modulus = self.p.pow(self.digits.len() as u32);

@@ -188,7 +188,11 @@ pub(crate) fn factorise<F: Field>(
             threshold,
             tiny,
         ) else {
-            let open = |steps: &[u32]| (0..n as u32).filter(|&i| steps[i as usize] == NONE).collect();
+            let open = |steps: &[u32]| {
+                (0..n as u32)
+                    .filter(|&i| steps[i as usize] == NONE)
+                    .collect()
+            };
             return Err(Singular {
                 rows: open(&row_step),
                 columns: open(&column_step),
@@ -313,7 +317,10 @@ fn find_pivot<F: Field>(
                 let row = &rows[i as usize];
                 let this = (row.len() - 1) * (count - 1);
                 if this < cost {
-                    let v = row.iter().find(|e| e.0 == j).map_or(F::E::default(), |e| e.1);
+                    let v = row
+                        .iter()
+                        .find(|e| e.0 == j)
+                        .map_or(F::E::default(), |e| e.1);
                     if acceptable(i as usize, v) {
                         best = Some((i as usize, column));
                         cost = this;

@@ -240,11 +240,19 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
                         .collect(),
                     primal_denominator: with_contents(
                         &(&values.solution.denominator * &p.bound_scale),
-                        frame.kernel.columns.iter().map(|&j| p.column_scale[j as usize].denom()),
+                        frame
+                            .kernel
+                            .columns
+                            .iter()
+                            .map(|&j| p.column_scale[j as usize].denom()),
                     ),
                     dual_denominator: with_contents(
                         &(&duals.solution.denominator * &p.cost_scale.abs()),
-                        frame.kernel.rows.iter().map(|&i| p.row_scale[i as usize].denom()),
+                        frame
+                            .kernel
+                            .rows
+                            .iter()
+                            .map(|&i| p.row_scale[i as usize].denom()),
                     ),
                 });
             }

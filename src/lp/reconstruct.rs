@@ -90,8 +90,17 @@ mod tests {
             assert_eq!(reconstruct(&u, &m), Some((n, d)));
         }
         let m = p.pow(3);
-        assert_eq!(reconstruct(&Int::zero(), &m), Some((Int::zero(), Int::one())));
-        assert_eq!(reconstruct(&Int::from(7i64), &m), Some((Int::from(7i64), Int::one())));
-        assert_eq!(reconstruct(&Int::from(-7i64), &m), Some((Int::from(-7i64), Int::one())));
+        assert_eq!(
+            reconstruct(&Int::zero(), &m),
+            Some((Int::zero(), Int::one()))
+        );
+        assert_eq!(
+            reconstruct(&Int::from(7i64), &m),
+            Some((Int::from(7i64), Int::one()))
+        );
+        assert_eq!(
+            reconstruct(&Int::from(-7i64), &m),
+            Some((Int::from(-7i64), Int::one()))
+        );
     }
 }

@@ -106,12 +106,9 @@ fn step<'a>(
         .basics()
         .map(|v| (v, breach(&frame, &values, v)))
         .collect();
-    if std::env::var_os("LP_TRACE").is_some() { eprintln!("breaches {}", breaches.iter().filter(|b| b.1 != Breach::None).count()); } // TRACE
     let infeasible = breaches.iter().any(|b| b.1 != Breach::None);
     let duals = frame.price(|v| cost(p, v), guesses[0].as_ref(), budget)?;
-    let t = std::time::Instant::now(); // TRACE
     let improving = entering(&frame, &duals, bland);
-    if std::env::var_os("LP_TRACE").is_some() { eprintln!("breaches entering {:?} {:.3}", improving, t.elapsed().as_secs_f64()); } // TRACE
     if !infeasible {
         let Some((q, sign)) = improving else {
             return Ok(Step::Done(Verdict::Optimal {
@@ -147,16 +144,14 @@ fn cost(p: &Problem, v: usize) -> Int {
 
 fn breach(frame: &Frame<'_>, values: &ColumnVector, v: usize) -> Breach {
     let p = frame.problem;
-    if let Some(l) = &p.lower[v] {
-        if values.sign(&values.component(frame, v).minus(l)) < 0 {
+    if let Some(l) = &p.lower[v]
+        && values.sign(&values.component(frame, v).minus(l)) < 0 {
             return Breach::Below;
         }
-    }
-    if let Some(u) = &p.upper[v] {
-        if values.sign(&values.component(frame, v).minus(u)) > 0 {
+    if let Some(u) = &p.upper[v]
+        && values.sign(&values.component(frame, v).minus(u)) > 0 {
             return Breach::Above;
         }
-    }
     Breach::None
 }
 
@@ -357,7 +352,11 @@ fn primal_step<'a>(
         };
         if flips {
             let mut basis = frame.basis;
-            basis.status[q] = if sign > 0 { Status::Upper } else { Status::Lower };
+            basis.status[q] = if sign > 0 {
+                Status::Upper
+            } else {
+                Status::Lower
+            };
             return Ok(Step::Move {
                 basis,
                 length_zero: false,
@@ -408,9 +407,7 @@ fn dual_step<'a>(
             Breach::Above => &p.upper[v],
         };
         let size = match bound {
-            Some(bound) if !bland => {
-                values.approximate(&values.component(&frame, v).minus(bound))
-            }
+            Some(bound) if !bland => values.approximate(&values.component(&frame, v).minus(bound)),
             _ => 0.0,
         };
         if leaving.as_ref().is_none_or(|l| size.abs() > l.2) {

@@ -7,6 +7,7 @@ use super::model::Model;
 use super::outcome::{Certificate, Outcome, Status, conclude};
 use super::problem::Problem;
 use super::simplex::{self, Effort};
+use crate::number::Rat;
 use std::time::Duration;
 
 /// Who finds the basis.
@@ -24,7 +25,8 @@ pub enum Method {
 pub enum Accuracy {
     /// Nothing: the floating-point result.
     Float,
-    /// A rational feasible point and rational feasible prices with their gap.
+    /// A proven rational enclosure of the optimum. At present it is found as for `Exact`, so
+    /// that its width is zero.
     Bounds,
     /// The optimum itself.
     #[default]
@@ -55,6 +57,11 @@ pub fn solve(model: &Model, options: &Options) -> Outcome {
     };
     let mut outcome = decide(model, options, &budget);
     outcome.method = method;
+    outcome.accuracy = match options.accuracy {
+        Accuracy::Float => "float",
+        Accuracy::Bounds => "bounds",
+        Accuracy::Exact => "exact",
+    };
     outcome
 }
 
@@ -78,6 +85,9 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     if options.method == Method::Warm {
         let proposal = float::propose(&problem, budget);
         iterations = proposal.iterations;
+        if options.accuracy == Accuracy::Float {
+            return unproven(model, &proposal);
+        }
         start = proposal.basis;
     }
     let run = simplex::run(&problem, start, budget, &mut effort);
@@ -88,4 +98,26 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     outcome.float_iterations = iterations;
     outcome.exact_pivots = effort.pivots;
     outcome
+}
+
+/// What floating point says, with nothing to prove it.
+fn unproven(model: &Model, proposal: &float::Proposal) -> Outcome {
+    let mut out = Outcome::undecided("");
+    out.reason = None;
+    out.float_iterations = proposal.iterations;
+    out.status = match proposal.ending {
+        float::Ending::Optimal => Status::Optimal,
+        float::Ending::Infeasible => Status::Infeasible,
+        float::Ending::Unbounded => Status::Unbounded,
+        float::Ending::Stuck => Status::Undecided,
+    };
+    if out.status == Status::Undecided {
+        out.reason = Some("floating point gave up".to_string());
+    }
+    if out.status == Status::Optimal && proposal.objective.is_finite() {
+        let value = Rat::from_f64(proposal.objective);
+        let value = if model.maximise { -value } else { value };
+        out.objective = Some(&model.constant + &value);
+    }
+    out
 }

@@ -217,7 +217,12 @@ impl Engine<'_> {
                 for (k, &v) in self.head.iter().enumerate() {
                     self.x[v] -= b[k];
                 }
-                excess = self.x[out] - if side > 0.0 { self.upper[out] } else { self.lower[out] };
+                excess = self.x[out]
+                    - if side > 0.0 {
+                        self.upper[out]
+                    } else {
+                        self.lower[out]
+                    };
             }
             // Dual step; a wrong sign left by the tolerance is shifted into the costs.
             let mut step = self.d[q] / alpha[q];

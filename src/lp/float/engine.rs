@@ -139,7 +139,6 @@ impl<'a> Engine<'a> {
                     return;
                 }
                 Err(left) => {
-                    if std::env::var_os("LP_TRACE").is_some() { eprintln!("    repaired {} at it {}", left.rows.len(), self.iterations); } // TRACE
                     for (&k, &i) in left.columns.iter().zip(&left.rows) {
                         let v = self.head[k as usize];
                         self.status[v] = rest(self.lower[v], self.upper[v]);
@@ -349,12 +348,6 @@ impl<'a> Engine<'a> {
         self.compute_reduced();
     }
 
-    fn trace(&self, what: &str) { // TRACE
-        if std::env::var_os("LP_TRACE").is_some() { // TRACE
-            eprintln!("  {what}: it {} infeasible {:.2e} attractive {}", self.iterations, self.infeasibility(), (0..self.status.len()).filter(|v| self.attractive(*v)).count()); // TRACE
-        } // TRACE
-    } // TRACE
-
     /// Widens the bounds of the basic variables by random amounts, against stalling. The
     /// others stay where they are, so that the values keep.
     pub(crate) fn perturb_bounds(&mut self) {
@@ -393,14 +386,12 @@ impl<'a> Engine<'a> {
     fn rounds(&mut self, cold: bool, most: u32, budget: &Budget) -> Result<Ending, Exhausted> {
         for round in 0..most {
             self.restore();
-            self.trace("round"); // TRACE
             if self.infeasibility() > 0.0 {
                 match self.dual(budget, cold && round < 4 || round % 2 == 1)? {
                     Ending::Optimal => {}
                     other => return Ok(other),
                 }
                 self.restore();
-                self.trace("after dual"); // TRACE
             }
             if self.infeasibility() < 1e-4 && (0..self.status.len()).any(|v| self.attractive(v)) {
                 match self.primal(budget)? {

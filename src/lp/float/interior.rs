@@ -71,9 +71,11 @@ pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<V
         SupportedConeT::ZeroConeT(equations.len()),
         SupportedConeT::NonnegativeConeT(sides.len()),
     ];
-    let seconds = budget.left().map_or(f64::INFINITY, |t| t.as_secs_f64() / 2.0);
+    let seconds = budget
+        .left()
+        .map_or(f64::INFINITY, |t| t.as_secs_f64() / 2.0);
     let settings = DefaultSettingsBuilder::default()
-        .verbose(std::env::var_os("LP_TRACE").is_some())
+        .verbose(false)
         .time_limit(seconds)
         .tol_gap_abs(1e-12)
         .tol_gap_rel(1e-12)

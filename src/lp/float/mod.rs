@@ -14,4 +14,4 @@ pub(crate) mod program;
 pub(crate) mod propose;
 
 pub(crate) use engine::Ending;
-pub(crate) use propose::propose;
+pub(crate) use propose::{Proposal, propose};

@@ -14,13 +14,13 @@ use crate::lp::problem::Problem;
 pub(crate) struct Proposal {
     pub(crate) basis: Basis,
     pub(crate) iterations: u64,
-    /// Objective in the model's own minimising sense, for `--accuracy float`.
     pub(crate) ending: Ending,
+    /// The objective as minimised, without the model's constant.
     pub(crate) objective: f64,
 }
 
 /// Non-zeros from which the interior point goes first.
-const LARGE: usize = 30_000;
+const LARGE: usize = 33_000;
 /// The same for programs that are dualised, where rows abound.
 const LARGE_DUALISED: usize = 2_500;
 
@@ -29,7 +29,12 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     let direct = Program::new(problem);
     let program = direct.dual().unwrap_or_else(|| direct.clone());
     let entries = direct.columns.index.len();
-    let large = entries >= if program.dualised { LARGE_DUALISED } else { LARGE };
+    let large = entries
+        >= if program.dualised {
+            LARGE_DUALISED
+        } else {
+            LARGE
+        };
     let mut iterations = 0;
     let mut best: Option<(Vec<Status>, Ending, f64)> = None;
     let mut take = |engine: &Engine<'_>, ending: Result<Ending, Exhausted>| {
@@ -42,30 +47,31 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     };
     let from_interior = |noise: f64| {
         let weights = interior::weights(&direct, noise, budget)?;
-        Some(Engine::new(&program, interior::heaviest(&program, &weights)))
+        Some(Engine::new(
+            &program,
+            interior::heaviest(&program, &weights),
+        ))
     };
     let sizes = (program.n + program.m) as u64;
     let mut done = false;
-    if large {
-        if let Some(mut engine) = from_interior(1.0) {
+    if large
+        && let Some(mut engine) = from_interior(1.0) {
             engine.most = 2 * sizes + 1000;
             let ending = engine.optimise(false, budget);
             done = take(&engine, ending);
         }
-    }
     if !done {
         let mut engine = Engine::slack(&program);
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(true, budget);
         done = take(&engine, ending);
     }
-    if !done && !large {
-        if let Some(mut engine) = from_interior(1.0) {
+    if !done && !large
+        && let Some(mut engine) = from_interior(1.0) {
             engine.most = 4 * sizes + 1000;
             let ending = engine.optimise(false, budget);
             take(&engine, ending);
         }
-    }
     let (status, ending, objective) =
         best.unwrap_or_else(|| (Engine::slack(&program).status, Ending::Stuck, f64::NAN));
     Proposal {
@@ -76,6 +82,10 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
             Ending::Infeasible | Ending::Unbounded if program.dualised => Ending::Stuck,
             other => other,
         },
-        objective: if program.dualised { -objective } else { objective },
+        objective: if program.dualised {
+            -objective
+        } else {
+            objective
+        },
     }
 }

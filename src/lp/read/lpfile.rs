@@ -198,6 +198,10 @@ impl<'a> Parser<'a> {
         &self.tokens[i].token
     }
 
+    fn line(&self) -> usize {
+        self.tokens[self.at.min(self.tokens.len() - 1)].line
+    }
+
     fn fault<T>(&self, message: impl Into<String>) -> Result<T, At> {
         let t = &self.tokens[self.at.min(self.tokens.len() - 1)];
         Err(At {
@@ -252,7 +256,8 @@ impl<'a> Parser<'a> {
                 };
             }
             let Some((heading, length)) = self.heading() else {
-                return self.fault("a section heading (Maximize, Subject To, Bounds, …) is missing");
+                return self
+                    .fault("a section heading (Maximize, Subject To, Bounds, …) is missing");
             };
             if heading == Heading::Refused {
                 return self.fault("this section is not linear programming");
@@ -282,7 +287,7 @@ impl<'a> Parser<'a> {
                     self.model.maximise = heading == Heading::Maximise;
                     self.label()?;
                     if self.heading().is_none() && *self.peek(0) != Token::End {
-                        let e = self.expression(1)?;
+                        let e = self.expression(1, false)?;
                         for (j, v) in e.terms {
                             self.model.columns[j].cost = v;
                         }
@@ -356,8 +361,9 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// A linear expression; `serial` is a number no other expression has.
-    fn expression(&mut self, serial: usize) -> Result<Expression, At> {
+    /// A linear expression; `serial` is a number no other row has, `right` says that it follows
+    /// a relation.
+    fn expression(&mut self, serial: usize, right: bool) -> Result<Expression, At> {
         let mut out = Expression {
             terms: Vec::new(),
             constant: Rat::zero(),
@@ -371,6 +377,7 @@ impl<'a> Parser<'a> {
             }
             let mut value = Rat::from(sign.unwrap_or(1));
             let mut coefficient = false;
+            let line = self.tokens[self.at.min(self.tokens.len() - 1)].line;
             if let Token::Number(text) = *self.peek(0) {
                 match number(text) {
                     Ok(v) => value = &value * &v,
@@ -380,9 +387,9 @@ impl<'a> Parser<'a> {
                 self.at += 1;
             }
             let name = match *self.peek(0) {
-                Token::Name(name)
-                    if *self.peek(1) != Token::Colon && self.heading().is_none() =>
-                {
+                // `<= 0` at the end of a line is a number, not a coefficient of the next row.
+                Token::Name(_) if right && coefficient && line != self.line() => None,
+                Token::Name(name) if *self.peek(1) != Token::Colon && self.heading().is_none() => {
                     Some(name)
                 }
                 _ => None,
@@ -427,11 +434,11 @@ impl<'a> Parser<'a> {
             return self.fault(format!("row `{}` appears twice", clip(&name)));
         }
         let serial = row + 2;
-        let mut left = self.expression(serial)?;
+        let mut left = self.expression(serial, false)?;
         let Some(relation) = self.relation() else {
             return self.fault("a constraint needs <=, >= or =");
         };
-        let right = self.expression(serial)?;
+        let right = self.expression(serial, true)?;
         let second = self.relation();
         let range;
         if let Some(second) = second {
@@ -439,13 +446,17 @@ impl<'a> Parser<'a> {
             if !left.terms.is_empty() || second != relation || relation == Token::Equal {
                 return self.fault("a double constraint is number <= expression <= number");
             }
-            let last = self.expression(serial)?;
+            let last = self.expression(serial, true)?;
             if !last.terms.is_empty() {
                 return self.fault("a double constraint ends with a number");
             }
             let a = &left.constant - &middle.constant;
             let b = &last.constant - &middle.constant;
-            let (lower, upper) = if relation == Token::Less { (a, b) } else { (b, a) };
+            let (lower, upper) = if relation == Token::Less {
+                (a, b)
+            } else {
+                (b, a)
+            };
             range = Range {
                 lower: Some(lower),
                 upper: Some(upper),
@@ -515,13 +526,12 @@ impl<'a> Parser<'a> {
         };
         let j = self.column(name);
         self.at += 1;
-        if let Token::Name(word) = *self.peek(0) {
-            if sides.is_empty() && word.eq_ignore_ascii_case("free") {
+        if let Token::Name(word) = *self.peek(0)
+            && sides.is_empty() && word.eq_ignore_ascii_case("free") {
                 self.at += 1;
                 self.model.columns[j].range = Range::free();
                 return Ok(());
             }
-        }
         if let Some(r) = self.relation() {
             match self.bound_value()? {
                 Some(value) => sides.push((r, value)),

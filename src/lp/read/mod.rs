@@ -179,7 +179,10 @@ fn tidy(text: &str) -> String {
         return String::new();
     }
     let lead = if digits.starts_with('.') { "0" } else { "" };
-    format!("{sign}{lead}{}{exponent}", digits.strip_suffix('.').unwrap_or(digits))
+    format!(
+        "{sign}{lead}{}{exponent}",
+        digits.strip_suffix('.').unwrap_or(digits)
+    )
 }
 
 /// A piece of hostile input short enough for a message.

@@ -359,9 +359,7 @@ impl<'a> Reader<'a> {
 
     fn bound(&mut self, line: &'a str) -> Result<(), Fault> {
         let fields = split(line);
-        let kinds = [
-            "UP", "LO", "FX", "FR", "MI", "PL", "BV", "LI", "UI", "SC",
-        ];
+        let kinds = ["UP", "LO", "FX", "FR", "MI", "PL", "BV", "LI", "UI", "SC"];
         let word = fields[0].1.to_ascii_uppercase();
         let Some(&kind) = kinds.iter().find(|k| **k == word) else {
             return Err((
