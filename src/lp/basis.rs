@@ -85,12 +85,17 @@ pub(crate) struct Frame<'a> {
 }
 
 const NONE: u32 = u32::MAX;
+/// Primes tried beyond the first before a proposed basis is taken for singular.
+const PRIMES: usize = 2;
 
 impl<'a> Frame<'a> {
-    /// Factorises a basis. One that is singular modulo the prime is repaired with logicals
-    /// where it is deficient, so that the result's basis may differ.
-    pub(crate) fn new(problem: &'a Problem, mut basis: Basis, prime: usize) -> Frame<'a> {
+    /// Factorises a basis. One that is singular modulo a few primes is repaired with logicals
+    /// where it is deficient, so that the result's basis may differ; but one that is `regular`,
+    /// as after an exact pivot, is tried modulo one prime after the other, of which only
+    /// finitely many divide its determinant.
+    pub(crate) fn new(problem: &'a Problem, mut basis: Basis, regular: bool) -> Frame<'a> {
         basis.tidy(problem);
+        let mut prime = 0;
         loop {
             let (rows, columns) = basis.kernel_lines(problem);
             if rows.len() != columns.len() {
@@ -115,7 +120,9 @@ impl<'a> Frame<'a> {
                         row_place,
                     };
                 }
+                Err(_) if regular || prime < PRIMES => prime += 1,
                 Err(left) => {
+                    prime = 0;
                     for k in left.columns {
                         let j = columns[k as usize] as usize;
                         basis.status[j] = resting(problem, j);
@@ -224,7 +231,7 @@ impl<'a> Frame<'a> {
         let p = self.problem;
         let mut costs: Vec<Int> = (0..p.n).map(&cost).collect();
         let mut fixed = vec![Int::zero(); p.m];
-        for i in 0..p.m {
+        for (i, price) in fixed.iter_mut().enumerate() {
             if self.row_place[i] == NONE {
                 let y = -cost(p.n + i);
                 if !y.is_zero() {
@@ -232,7 +239,7 @@ impl<'a> Frame<'a> {
                         costs[p.rows.index[e] as usize] -= &(p.rows.int(e) * &y);
                     }
                 }
-                fixed[i] = y;
+                *price = y;
             }
         }
         let rhs: Vec<Int> = self

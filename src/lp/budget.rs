@@ -38,18 +38,6 @@ impl Budget {
         }
     }
 
-    /// The same, ending no later than after `time`.
-    pub(crate) fn at_most(&self, time: Duration) -> Budget {
-        let other = Instant::now().checked_add(time);
-        Budget {
-            deadline: match (self.deadline, other) {
-                (Some(a), Some(b)) => Some(a.min(b)),
-                (a, b) => a.or(b),
-            },
-            bytes: self.bytes,
-        }
-    }
-
     /// Time left, if it is limited.
     pub(crate) fn left(&self) -> Option<Duration> {
         self.deadline

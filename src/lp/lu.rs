@@ -361,13 +361,6 @@ fn find_pivot<F: Field>(
     best
 }
 
-impl<E: Copy + Default> Lu<E> {
-    /// Non-zeros of both factors.
-    pub(crate) fn entries(&self) -> usize {
-        self.lower_rows.index.len() + self.upper_rows.index.len() + self.diagonal.len()
-    }
-}
-
 impl Lu<f64> {
     /// Solves A·x = b in place: `b` by rows becomes x by columns. `work` is scratch.
     pub(crate) fn solve(&self, b: &mut [f64], work: &mut Vec<f64>) {

@@ -12,7 +12,7 @@
 //! fixed: such a run is a run of the simplex method on *one* program, where an infeasible
 //! variable has its violated bound as its only one. After [`PATIENCE`] steps of length zero the
 //! choice of both variables is by least index among the candidates (Bland's rule) until a step
-//! has length, and Bland's rule does not cycle. There are finitely many statuses.
+//! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least). There are finitely many statuses.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
 use super::budget::{Budget, Exhausted};
@@ -58,7 +58,7 @@ enum Breach {
 }
 
 enum Step<'a> {
-    Done(Verdict<'a>),
+    Done(Box<Verdict<'a>>),
     Move { basis: Basis, length_zero: bool },
 }
 
@@ -71,12 +71,14 @@ pub(crate) fn run<'a>(
 ) -> Result<Verdict<'a>, (Exhausted, Basis)> {
     let mut basis = start;
     let mut stalled = 0;
+    let mut regular = false;
     let mut guesses = [None, None, None];
     loop {
-        let frame = Frame::new(problem, basis, 0);
+        let frame = Frame::new(problem, basis, regular);
+        regular = true;
         let before = frame.basis.clone();
         match step(frame, stalled >= PATIENCE, &mut guesses, budget) {
-            Ok(Step::Done(verdict)) => return Ok(verdict),
+            Ok(Step::Done(verdict)) => return Ok(*verdict),
             Ok(Step::Move {
                 basis: next,
                 length_zero,
@@ -111,13 +113,13 @@ fn step<'a>(
     let improving = entering(&frame, &duals, bland);
     if !infeasible {
         let Some((q, sign)) = improving else {
-            return Ok(Step::Done(Verdict::Optimal {
+            return Ok(Step::Done(Box::new(Verdict::Optimal {
                 frame,
                 values,
                 duals,
-            }));
+            })));
         };
-        return primal_step(frame, values, breaches, q, sign, bland, guesses, budget);
+        return primal_step(frame, values, breaches, q, sign, guesses, budget);
     }
     if improving.is_none() {
         return dual_step(frame, &values, &breaches, &duals, bland, guesses, budget);
@@ -133,8 +135,8 @@ fn step<'a>(
     }
     let prices = frame.price(|v| Int::from(slope[v]), guesses[0].as_ref(), budget)?;
     match entering(&frame, &prices, bland) {
-        None => Ok(Step::Done(Verdict::Infeasible { frame, prices })),
-        Some((q, sign)) => primal_step(frame, values, breaches, q, sign, bland, guesses, budget),
+        None => Ok(Step::Done(Box::new(Verdict::Infeasible { frame, prices }))),
+        Some((q, sign)) => primal_step(frame, values, breaches, q, sign, guesses, budget),
     }
 }
 
@@ -145,13 +147,15 @@ fn cost(p: &Problem, v: usize) -> Int {
 fn breach(frame: &Frame<'_>, values: &ColumnVector, v: usize) -> Breach {
     let p = frame.problem;
     if let Some(l) = &p.lower[v]
-        && values.sign(&values.component(frame, v).minus(l)) < 0 {
-            return Breach::Below;
-        }
+        && values.sign(&values.component(frame, v).minus(l)) < 0
+    {
+        return Breach::Below;
+    }
     if let Some(u) = &p.upper[v]
-        && values.sign(&values.component(frame, v).minus(u)) > 0 {
-            return Breach::Above;
-        }
+        && values.sign(&values.component(frame, v).minus(u)) > 0
+    {
+        return Breach::Above;
+    }
     Breach::None
 }
 
@@ -305,7 +309,6 @@ fn primal_step<'a>(
     breaches: Vec<(usize, Breach)>,
     q: usize,
     sign: i32,
-    bland: bool,
     guesses: &mut Guesses,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
@@ -363,17 +366,16 @@ fn primal_step<'a>(
             });
         }
     }
-    let _ = bland; // ties fall to the least index always
     let leaving = chosen.as_ref().map(|c| c.variable);
     drop(chosen);
     match leaving {
-        None if feasible => Ok(Step::Done(Verdict::Unbounded {
+        None if feasible => Ok(Step::Done(Box::new(Verdict::Unbounded {
             frame,
             values,
             direction,
             variable: q,
             sign,
-        })),
+        }))),
         // Phase one is bounded below by zero, so some infeasible variable blocks.
         None => Err(Exhausted),
         Some(v) => {
@@ -438,7 +440,10 @@ fn dual_step<'a>(
         ratios.push(Ratio::new(v, (duals, top), (&row, bottom)));
     }
     let Some(chosen) = least(ratios) else {
-        return Ok(Step::Done(Verdict::Infeasible { frame, prices: row }));
+        return Ok(Step::Done(Box::new(Verdict::Infeasible {
+            frame,
+            prices: row,
+        })));
     };
     let (q, length_zero) = (chosen.variable, chosen.top.1.is_none());
     drop(chosen);
@@ -450,4 +455,28 @@ fn dual_step<'a>(
     };
     basis.status[q] = Status::Basic;
     Ok(Step::Move { basis, length_zero })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::lp::field::Prime;
+    use crate::lp::{Model, Options, Range, solve};
+    use crate::number::Rat;
+
+    /// Coefficients that vanish modulo the primes used must not send the method in circles.
+    #[test]
+    fn multiples_of_the_primes() {
+        let product = (0..5).fold(Rat::one(), |v, k| v * Rat::from(Prime::nth(k).p as i64));
+        let mut model = Model::new("primes");
+        model.maximise = true;
+        let x = model.add_column("x", Rat::one(), Range::free());
+        let y = model.add_column("y", Rat::one(), Range::at_least(Rat::zero()));
+        let r = model.add_row("r", Range::at_most(Rat::one()));
+        model.set(r, x, product.clone());
+        model.set(r, y, &product + &Rat::one());
+        let s = model.add_row("s", Range::at_most(Rat::one()));
+        model.set(s, x, Rat::one());
+        let out = solve(&model, &Options::default());
+        assert_eq!(out.objective, Some(product.recip()));
+    }
 }

@@ -64,8 +64,6 @@ pub(crate) struct Program {
     pub(crate) upper: Vec<f64>,
     /// Whether this is the dual of the problem it was made from.
     pub(crate) dualised: bool,
-    /// Exponents of the scaling: of columns, then of rows.
-    exponents: Vec<i64>,
 }
 
 impl Program {
@@ -138,7 +136,6 @@ impl Program {
             lower,
             upper,
             dualised: false,
-            exponents,
         }
     }
 
@@ -199,7 +196,6 @@ impl Program {
             lower,
             upper,
             dualised: true,
-            exponents: Vec::new(),
         })
     }
 
@@ -219,8 +215,8 @@ impl Program {
         for j in 0..p.n {
             out.push(flip(status[self.n + j], j));
         }
-        for i in 0..p.m {
-            out.push(flip(status[i], p.n + i));
+        for (i, s) in status[..p.m].iter().enumerate() {
+            out.push(flip(*s, p.n + i));
         }
         Basis { status: out }
     }
