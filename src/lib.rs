@@ -1,4 +1,49 @@
-//! snapfit predicts, exactly, the motion of planar mechanisms that click.
+//! snapfit predicts, exactly, the motion of planar mechanisms that click: a rigid root
+//! translates, pawls hang from it on torsional springs, they strike polygonal obstacles, comply,
+//! slide, stick, jam and snap (Donald & Pai 1993, cited as DP).
+//!
+//! The story, in order; each module depends only on what stands before it:
+//!
+//! ```text
+//! scene file ─ scene ─▶ Scene ─ contact ─▶ patches ─ slice ─▶ arcs on the (t, θ) cylinder
+//!   ─ motion ─▶ Trajectory ─ report ─▶ JSON, summary, SVG
+//! ```
+//!
+//! * [`number`]: integers and rationals behind one seam, certified intervals, real algebraic
+//!   numbers. No float decides anything; a float may settle a sign that its error bound proves.
+//! * [`geometry`]: points, rational rotations, polygons, exact predicates.
+//! * [`scene`]: what the user describes, read with places, validated.
+//! * [`contact`]: C-functions and their patches, types A and B.
+//! * [`slice`]: the cylinder of one phase, cut by monotone arcs with named ends.
+//! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`lp`]: exact linear programming, with certificates.
+//! * [`certificate`]: the checker of certificates, which shares no code with what made them.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = r#"
+//!     [scene]
+//!     name = "tip on a floor"
+//!     [[obstacle]]
+//!     name = "floor"
+//!     vertices = [["-10", "-1"], ["10", "-1"], ["10", "0"], ["-10", "0"]]
+//!     [[pawl]]
+//!     name = "finger"
+//!     hinge = ["0", "6"]
+//!     vertices = [["0", "6"], ["3", "2"], ["16/5", "9/5"]]
+//!     [[motion]]
+//!     velocity = ["0", "-1"]
+//!     duration = "5"
+//! "#;
+//! let file = snapfit::scene::read_scene("tip.toml", text).map_err(|e| format!("{e:?}"))?;
+//! let trajectory = snapfit::motion::simulate(file.scene(), &Default::default())?;
+//! assert_eq!(trajectory.outcome.kind, snapfit::motion::OutcomeKind::Completed);
+//! // The lower vertex, 4 1/5 below the hinge, meets the floor at t = 6 − 21/5 = 9/5.
+//! let first = &trajectory.pawls[0].events[0];
+//! assert_eq!(first.time.as_rat(), Some(&snapfit::number::Rat::frac(9, 5)));
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod certificate;
 pub mod contact;
@@ -6,5 +51,6 @@ pub mod geometry;
 pub mod lp;
 pub mod motion;
 pub mod number;
+pub mod report;
 pub mod scene;
 pub mod slice;

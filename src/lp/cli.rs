@@ -83,7 +83,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn bad(message: impl std::fmt::Display) -> u8 {
-    eprintln!("{message}");
+    let _ = writeln!(std::io::stderr(), "{message}");
     BAD
 }
 
@@ -165,9 +165,10 @@ pub fn run_verify(args: &VerifyArgs) -> u8 {
             Err(e) => ("rejected", Some(e.0), REJECTED),
         },
     };
-    println!(
-        "{}",
-        serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] })
-    );
-    code
+    let verdict =
+        serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] });
+    match writeln!(std::io::stdout(), "{verdict}") {
+        Ok(()) => code,
+        Err(e) => bad(format!("standard output: {e}")),
+    }
 }

@@ -1,1 +1,36 @@
-//! (to be written)
+//! Motion: the dynamical rules, in one place, and the simple algorithm that applies them.
+//!
+//! # The clamp
+//!
+//! On the line L(t) the free component of a pawl is a set of intervals of orientation. The state
+//! is the point of its own interval nearest to rest, followed continuously in t. Everything in
+//! DP §8 and §9 is a consequence. At a critical point z two questions decide:
+//!
+//! 1. *Does the interval survive?* Just above z (and just below) the configuration stays free
+//!    across the instant unless an arc closes on z from that side, or a wall stands there. If the
+//!    side that the state borders is closed, the motion jams.
+//! 2. *Where does the interval end just after?* At the topmost arc that leaves z to the right
+//!    (seen from above). If there is one, the state follows it; if there is none, the near end
+//!    has jumped, and the state snaps to the next arc on the way to rest, or to rest itself.
+//!
+//! No normals are needed (DP eq. 32 is neither necessary nor sufficient), and vertical tangencies,
+//! vertices, walls, levels and seams are all the same case.
+//!
+//! # Modules
+//!
+//! [`friction`] says where a contact sticks (DP §6, §7), [`phase`] runs one pawl through one
+//! phase, [`root`] finds the root's collision, [`plan`] strings phases together, [`trajectory`]
+//! holds what comes out.
+
+pub mod friction;
+mod local;
+pub mod phase;
+pub mod plan;
+pub mod root;
+pub mod trajectory;
+
+pub use plan::{Options, PlanError, simulate};
+pub use trajectory::{
+    Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
+    Trajectory,
+};

@@ -1,0 +1,222 @@
+//! Patches: for each pair of features that can touch, the C-function with the conditions under
+//! which it is a real contact.
+
+use super::{Contact, ContactKind, ObstacleShape, PawlShape, Trig};
+use crate::geometry::Vec2;
+use crate::number::{Interval, Rat};
+
+/// A straight phase as one hinge sees it: p(t) = p₀ + v·t, 0 ≤ t ≤ duration.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Hinge at the start of the phase.
+    pub p0: Vec2,
+    /// Velocity, not zero.
+    pub v: Vec2,
+    /// How long the phase lasts.
+    pub duration: Rat,
+}
+
+/// One contact pair over one phase (DP eqs. 3, 4, 22): the C-function f = f₀ + t·f₁ is positive
+/// where the features are apart and negative where they penetrate.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// Who touches whom.
+    pub contact: Contact,
+    /// The part of the C-function without t.
+    pub f0: Trig,
+    /// The part of the C-function with t.
+    pub f1: Trig,
+    /// Both must be ≥ 0: neither polygon penetrates beside the contact (applicability, DP §5).
+    pub wedge: [Trig; 2],
+    /// (g₀, g₁): both g₀ + t·g₁ must be ≥ 0: the contact lies between the ends of the edge.
+    pub location: [(Trig, Trig); 2],
+    /// The pawl vertex and obstacle vertex that meet where each location condition ends.
+    pub ends: [(Vec2, Vec2); 2],
+    /// The pawl edge (direction) and obstacle edge (normal) that are flush where each wedge
+    /// condition ends, as ids: (pawl edge, obstacle ring's global edge id).
+    pub flush: [(u32, u32); 2],
+}
+
+/// R_θ a · n as a function of θ.
+fn dot(a: &Vec2, n: &Vec2) -> Trig {
+    Trig::new(a.dot(n), a.cross(n), Rat::zero())
+}
+
+/// n · R_θ m = R_θ m · n, plus a constant.
+fn dot_plus(a: &Vec2, n: &Vec2, k: Rat) -> Trig {
+    Trig::new(a.dot(n), a.cross(n), k)
+}
+
+fn box_of(points: &[&Vec2]) -> (Interval, Interval) {
+    let hull = |f: fn(&Vec2) -> Interval| {
+        points.iter().map(|p| f(p)).fold(
+            Interval {
+                lo: f64::INFINITY,
+                hi: f64::NEG_INFINITY,
+            },
+            |a, b| Interval {
+                lo: a.lo.min(b.lo),
+                hi: a.hi.max(b.hi),
+            },
+        )
+    };
+    (hull(|p| p.x.interval()), hull(|p| p.y.interval()))
+}
+
+/// Certified enclosure of the squared distance between two boxes' points.
+fn dist2(a: (Interval, Interval), b: (Interval, Interval)) -> Interval {
+    let gap = |p: Interval, q: Interval| (p - q).square();
+    gap(a.0, b.0) + gap(a.1, b.1)
+}
+
+/// The patches of a pawl against the obstacles over a phase, without those that lie out of the
+/// pawl's reach along the hinge's path (idea 4: what cannot be met is never made).
+///
+/// Cost: one certified interval test a pair; exact work only for pairs within reach.
+pub fn patches(frame: &Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> Vec<Patch> {
+    let ring = &pawl.ring;
+    let m = ring.len();
+    let p_end = &frame.p0 + &frame.v.scale(&frame.duration);
+    let path = box_of(&[&frame.p0, &p_end]);
+    let radius2: Vec<Interval> = ring.vertices.iter().map(|a| a.norm2().interval()).collect();
+    let hinge = (Interval::point(0.0), Interval::point(0.0));
+    let nearest2: Vec<f64> = (0..m)
+        .map(|i| {
+            dist2(
+                box_of(&[&ring.vertices[i], &ring.vertices[ring.next(i)]]),
+                hinge,
+            )
+            .lo
+        })
+        .collect();
+    let reach2 = radius2.iter().map(|r| r.hi).fold(0.0, f64::max);
+    let mut out = Vec::new();
+    let mut edge_base = 0u32;
+    for (o, obstacle) in obstacles.iter().enumerate() {
+        for (r, oring) in obstacle.rings.iter().enumerate() {
+            for j in 0..oring.len() {
+                let (q, q_next) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
+                let edge_box = box_of(&[q, q_next]);
+                let d2 = dist2(edge_box, path);
+                if d2.lo <= reach2 {
+                    for (i, r2) in radius2.iter().enumerate() {
+                        if ring.convex[i] && d2.lo <= r2.hi && d2.hi >= r2.lo {
+                            out.push(type_b(frame, pawl, oring, o, r, i, j, edge_base));
+                        }
+                    }
+                }
+                let q2 = dist2(box_of(&[q]), path);
+                if oring.convex[j] && q2.lo <= reach2 {
+                    for i in 0..m {
+                        let far = radius2[i].hi.max(radius2[ring.next(i)].hi);
+                        if q2.lo <= far && q2.hi >= nearest2[i] {
+                            out.push(type_a(frame, pawl, oring, o, r, i, j, edge_base));
+                        }
+                    }
+                }
+            }
+            edge_base += oring.len() as u32;
+        }
+    }
+    out
+}
+
+#[allow(clippy::too_many_arguments)]
+fn type_b(
+    frame: &Frame,
+    pawl: &PawlShape,
+    oring: &super::Ring,
+    o: usize,
+    r: usize,
+    i: usize,
+    j: usize,
+    edge_base: u32,
+) -> Patch {
+    let ring = &pawl.ring;
+    let a = &ring.vertices[i];
+    let n = &oring.normals[j];
+    let (q0, q1) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
+    let tau = q1 - q0;
+    let (ahead, behind) = (
+        &ring.vertices[ring.next(i)] - a,
+        &ring.vertices[ring.prev(i)] - a,
+    );
+    let to_hinge = &frame.p0 - q0;
+    let past = q1 - &frame.p0;
+    let vt = frame.v.dot(&tau);
+    Patch {
+        contact: Contact::Obstacle {
+            obstacle: o as u32,
+            kind: ContactKind::B,
+            ring: r as u32,
+            obstacle_feature: j as u32,
+            pawl_feature: i as u32,
+        },
+        f0: dot_plus(a, n, to_hinge.dot(n)),
+        f1: Trig::constant(frame.v.dot(n)),
+        wedge: [dot(&ahead, n), dot(&behind, n)],
+        location: [
+            (
+                dot_plus(a, &tau, to_hinge.dot(&tau)),
+                Trig::constant(vt.clone()),
+            ),
+            (
+                dot_plus(a, &tau, -past.dot(&tau)).neg(),
+                Trig::constant(-vt),
+            ),
+        ],
+        ends: [(a.clone(), q0.clone()), (a.clone(), q1.clone())],
+        flush: [
+            (i as u32, edge_base + j as u32),
+            (ring.prev(i) as u32, edge_base + j as u32),
+        ],
+    }
+}
+
+#[allow(clippy::too_many_arguments)]
+fn type_a(
+    frame: &Frame,
+    pawl: &PawlShape,
+    oring: &super::Ring,
+    o: usize,
+    r: usize,
+    i: usize,
+    j: usize,
+    edge_base: u32,
+) -> Patch {
+    let ring = &pawl.ring;
+    let m = &ring.normals[i];
+    let (a0, a1) = (&ring.vertices[i], &ring.vertices[ring.next(i)]);
+    let tau = a1 - a0;
+    let q = &oring.vertices[j];
+    let w = q - &frame.p0;
+    let e = m.dot(a0);
+    let (ahead, behind) = (
+        &oring.vertices[oring.next(j)] - q,
+        &oring.vertices[oring.prev(j)] - q,
+    );
+    // (w − v·t)·R m − e and (w − v·t)·R τ between a₀·τ and a₁·τ.
+    let v = &frame.v;
+    let minus_v = -v;
+    Patch {
+        contact: Contact::Obstacle {
+            obstacle: o as u32,
+            kind: ContactKind::A,
+            ring: r as u32,
+            obstacle_feature: j as u32,
+            pawl_feature: i as u32,
+        },
+        f0: dot_plus(m, &w, -&e),
+        f1: dot(m, &minus_v),
+        wedge: [dot(m, &ahead), dot(m, &behind)],
+        location: [
+            (dot_plus(&tau, &w, -a0.dot(&tau)), dot(&tau, &minus_v)),
+            (dot_plus(&tau, &w, -a1.dot(&tau)).neg(), dot(&tau, v)),
+        ],
+        ends: [(a0.clone(), q.clone()), (a1.clone(), q.clone())],
+        flush: [
+            (i as u32, edge_base + j as u32),
+            (i as u32, edge_base + oring.prev(j) as u32),
+        ],
+    }
+}

@@ -1,0 +1,489 @@
+//! The local picture at a point of the cylinder: which arcs meet there, whether the state's
+//! interval survives, and where its near end is just after.
+
+use crate::contact::{Chart, Contact};
+use crate::number::{Algebraic, Rat};
+use crate::slice::{ArcId, Germs, Point, Shape, Side, Slice, Time, cmp_horizontal};
+use std::cmp::Ordering;
+
+/// Where the state is while nothing happens.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum State {
+    /// θ = 0, touching or not.
+    Rest,
+    /// Held by an arc; `lower` if the arc is the lower end of the state's interval.
+    On {
+        arc: ArcId,
+        half_turn: i64,
+        lower: bool,
+    },
+}
+
+/// An arc at a point, with the way it leaves it.
+#[derive(Clone, Debug)]
+pub(super) struct Incident {
+    pub(super) arc: ArcId,
+    pub(super) half_turn: i64,
+    pub(super) germs: Germs,
+    /// Which of the point's two representations (they differ only on the seam between charts);
+    /// the higher one lies above.
+    rank: usize,
+}
+
+/// A point with the second representation it has on a seam.
+pub(super) struct Place {
+    reps: [Option<(Point, i64)>; 2],
+}
+
+impl Place {
+    /// The place of a point in a half-turn.
+    pub(super) fn new(z: Point, half_turn: i64) -> Place {
+        let one = Rat::one();
+        let minus_one = Rat::from(-1);
+        // On the seam x is rational, and with it every time that is a function of x.
+        let mirrored = |x: &Rat| Point {
+            chart: z.chart.other(),
+            x: Algebraic::from(x.clone()),
+            t: match z.t.as_rat() {
+                Some(_) => z.t.clone(),
+                None => z.t.exact().to_rat().map_or_else(|| z.t.clone(), Time::from),
+            },
+            on: z.on.clone(),
+        };
+        if z.x.cmp_rat(&one).is_eq() {
+            let above = mirrored(&minus_one);
+            Place {
+                reps: [Some((z, half_turn)), Some((above, half_turn + 1))],
+            }
+        } else if z.x.cmp_rat(&minus_one).is_eq() {
+            let below = mirrored(&one);
+            Place {
+                reps: [Some((below, half_turn - 1)), Some((z, half_turn))],
+            }
+        } else {
+            Place {
+                reps: [Some((z, half_turn)), None],
+            }
+        }
+    }
+    fn reps(&self) -> impl Iterator<Item = (usize, &Point, i64)> {
+        self.reps
+            .iter()
+            .enumerate()
+            .filter_map(|(i, r)| r.as_ref().map(|(p, h)| (i, p, *h)))
+    }
+    fn point(&self, rank: usize) -> Option<&Point> {
+        self.reps.get(rank).and_then(|r| r.as_ref()).map(|(p, _)| p)
+    }
+}
+
+/// What follows an event, by the clamp.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) enum Next {
+    /// The state is at rest.
+    Rest,
+    /// The state follows an arc.
+    Follow {
+        arc: ArcId,
+        half_turn: i64,
+        lower: bool,
+    },
+    /// The near end has jumped: the state snaps downward (−1) or upward (+1).
+    Snap(i32),
+    /// No way on; the arcs that closed the interval, and whether one curve alone (or a wall) did.
+    Jam { arcs: Vec<ArcId>, single: bool },
+    /// At rest, with both ways round open.
+    Fork { up: ArcId, down: ArcId },
+}
+
+/// All arcs that hold a place.
+pub(super) fn incident(slice: &Slice, place: &Place) -> Vec<Incident> {
+    let mut out = Vec::new();
+    for (rank, z, half_turn) in place.reps() {
+        for &id in slice.arcs_in(z.chart) {
+            let arc = slice.arc(id);
+            if arc.is_barrier() && slice.holds(arc, z) {
+                out.push(Incident {
+                    arc: id,
+                    half_turn,
+                    germs: slice.germs(arc, z),
+                    rank,
+                });
+            }
+        }
+    }
+    out
+}
+
+fn cmp_germs(slice: &Slice, place: &Place, a: &Incident, b: &Incident, after: bool) -> Ordering {
+    if a.rank != b.rank {
+        return a.rank.cmp(&b.rank);
+    }
+    match place.point(a.rank) {
+        Some(z) if after => slice.cmp_after(a.arc, b.arc, z),
+        Some(z) => slice.cmp_before(a.arc, b.arc, z),
+        None => Ordering::Equal,
+    }
+}
+
+/// The topmost and the bottommost of the arcs that leave to the right; of coincident ones the
+/// first contact.
+pub(super) fn right_extremes(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+) -> Option<(Incident, Incident)> {
+    let right: Vec<&Incident> = inc.iter().filter(|i| i.germs.right).collect();
+    let contact = |i: &Incident| slice.arc(i.arc).contact;
+    let mut top = *right.first()?;
+    let mut bottom = top;
+    for &g in &right[1..] {
+        match cmp_germs(slice, place, g, top, true) {
+            Ordering::Greater => top = g,
+            Ordering::Equal if contact(g) < contact(top) => top = g,
+            _ => {}
+        }
+        match cmp_germs(slice, place, g, bottom, true) {
+            Ordering::Less => bottom = g,
+            Ordering::Equal if contact(g) < contact(bottom) => bottom = g,
+            _ => {}
+        }
+    }
+    Some((top.clone(), bottom.clone()))
+}
+
+/// All arcs that leave to the right, from the bottom up.
+pub(super) fn right_sorted(slice: &Slice, place: &Place, inc: &[Incident]) -> Vec<Incident> {
+    let mut right: Vec<Incident> = inc.iter().filter(|i| i.germs.right).cloned().collect();
+    right.sort_by(|a, b| cmp_germs(slice, place, a, b, true));
+    right
+}
+
+/// Position of an arc at rest's own place just after (or before), against θ = 0.
+fn against_rest(slice: &Slice, i: &Incident, after: bool) -> Ordering {
+    cmp_horizontal(slice.arc(i.arc), after)
+}
+
+/// Decides what follows at a place that the state reaches (DP §9.2; see the module's opening).
+///
+/// `at_rest` says whether the place is θ = 0. `free` tells by the polygons whether the side above
+/// (true) or below an arc is free just after; it is asked only where the interval splits at the
+/// state's own place.
+pub(super) fn resolve(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+    state: State,
+    at_rest: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
+) -> Next {
+    let own = match state {
+        State::On { arc, .. } => inc.iter().find(|i| i.arc == arc),
+        State::Rest => None,
+    };
+    // The side of each left germ on which the state does not lie.
+    let left_of = |i: &Incident| match own {
+        Some(o) => cmp_germs(slice, place, i, o, false),
+        None => against_rest(slice, i, false),
+    };
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    let (mut wall_up, mut wall_down) = (Vec::new(), Vec::new());
+    for i in inc {
+        if i.germs.up {
+            wall_up.push(i.arc);
+        }
+        if i.germs.down {
+            wall_down.push(i.arc);
+        }
+        if i.germs.left {
+            match left_of(i) {
+                Ordering::Greater => above.push(i.arc),
+                Ordering::Less => below.push(i.arc),
+                Ordering::Equal => match slice.arc(i.arc).side {
+                    Side::Above => below.push(i.arc),
+                    Side::Below => above.push(i.arc),
+                    Side::Neither => {
+                        above.push(i.arc);
+                        below.push(i.arc);
+                    }
+                    _ => {}
+                },
+            }
+        }
+    }
+    let up_open = above.is_empty() && wall_up.is_empty();
+    let down_open = below.is_empty() && wall_down.is_empty();
+    let jam = |closing: &[ArcId], wall: &[ArcId], own: Option<ArcId>| {
+        if !wall.is_empty() {
+            return Next::Jam {
+                arcs: wall.to_vec(),
+                single: true,
+            };
+        }
+        let mut arcs: Vec<ArcId> = closing.to_vec();
+        arcs.extend(own);
+        let curve = |a: ArcId| slice.arc(a).curve;
+        let single = arcs.windows(2).all(|w| curve(w[0]) == curve(w[1]));
+        Next::Jam { arcs, single }
+    };
+    let ends = right_extremes(slice, place, inc);
+    match state {
+        State::On { arc, lower, .. } => {
+            let open = if lower { up_open } else { down_open };
+            if !open {
+                let (closing, wall) = if lower {
+                    (&above, &wall_up)
+                } else {
+                    (&below, &wall_down)
+                };
+                return jam(closing, wall, Some(arc));
+            }
+            let near = ends.map(|(top, bottom)| if lower { top } else { bottom });
+            let kept = kept_part(slice, place, inc, arc, lower, free);
+            settle(slice, kept.or(near), lower, at_rest)
+        }
+        State::Rest => {
+            if !up_open && !down_open {
+                let wall: Vec<ArcId> = wall_up.iter().chain(&wall_down).copied().collect();
+                let closing: Vec<ArcId> = above.iter().chain(&below).copied().collect();
+                return jam(&closing, &wall, None);
+            }
+            let next = at_rest_next(slice, ends, up_open, down_open);
+            match next {
+                Next::Rest => next,
+                _ if rests_on_level(slice, place, inc, true, free) => Next::Rest,
+                _ => next,
+            }
+        }
+    }
+}
+
+/// The germ next above (`up`) or below another one to the right.
+fn neighbour<'a>(
+    slice: &Slice,
+    place: &Place,
+    inc: &'a [Incident],
+    of: &Incident,
+    up: bool,
+) -> Option<&'a Incident> {
+    let side = if up {
+        Ordering::Greater
+    } else {
+        Ordering::Less
+    };
+    let beyond = inc
+        .iter()
+        .filter(|i| i.germs.right && cmp_germs(slice, place, i, of, true) == side);
+    beyond.reduce(|best, i| {
+        if cmp_germs(slice, place, i, best, true) == side.reverse() {
+            i
+        } else {
+            best
+        }
+    })
+}
+
+/// Where the state's own curve goes on and the part beside it is still free, although something
+/// else begins at this very place: "away from rest the state keeps to the part that still borders
+/// its curve".
+fn kept_part(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+    own: ArcId,
+    lower: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
+) -> Option<Incident> {
+    let a = slice.arc(own);
+    let goes_on = |i: &&Incident| {
+        let b = slice.arc(i.arc);
+        i.germs.right
+            && (i.arc == own
+                || slice.coincide(own, i.arc)
+                || (a.curve == b.curve && a.branch == b.branch && a.shape != Shape::Level))
+    };
+    let on = inc
+        .iter()
+        .filter(goes_on)
+        .min_by_key(|i| slice.arc(i.arc).contact)?;
+    let next = neighbour(slice, place, inc, on, lower)?;
+    let facing = if lower { Side::Below } else { Side::Above };
+    (slice.arc(next.arc).side == facing && free(on.arc, lower)).then(|| on.clone())
+}
+
+/// Whether rest touches a level that goes on and the part beside that level is still free. With
+/// `before`, only a level that was there already counts.
+pub(super) fn rests_on_level(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+    before: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
+) -> bool {
+    inc.iter().any(|i| {
+        let arc = slice.arc(i.arc);
+        let lower = arc.side == Side::Above;
+        let facing = if lower { Side::Below } else { Side::Above };
+        arc.shape == Shape::Level
+            && i.germs.right
+            && (i.germs.left || !before)
+            && matches!(arc.side, Side::Above | Side::Below)
+            && neighbour(slice, place, inc, i, lower)
+                .is_some_and(|n| slice.arc(n.arc).side == facing)
+            && free(i.arc, lower)
+    })
+}
+
+/// The near end of an interval whose side above (`lower`) or below the place is open.
+pub(super) fn settle(slice: &Slice, near: Option<Incident>, lower: bool, at_rest: bool) -> Next {
+    let Some(i) = near else {
+        return if at_rest {
+            Next::Rest
+        } else {
+            Next::Snap(if lower { -1 } else { 1 })
+        };
+    };
+    let drives = if lower {
+        Ordering::Greater
+    } else {
+        Ordering::Less
+    };
+    if at_rest && against_rest(slice, &i, true) != drives {
+        return Next::Rest;
+    }
+    Next::Follow {
+        arc: i.arc,
+        half_turn: i.half_turn,
+        lower,
+    }
+}
+
+/// What follows at rest, given the sides that are open and the extreme arcs to the right.
+pub(super) fn at_rest_next(
+    slice: &Slice,
+    ends: Option<(Incident, Incident)>,
+    up_open: bool,
+    down_open: bool,
+) -> Next {
+    let Some((top, bottom)) = ends else {
+        return Next::Rest;
+    };
+    let up = settle(slice, Some(top.clone()), true, true);
+    let down = settle(slice, Some(bottom.clone()), false, true);
+    match (up_open, down_open) {
+        (true, true) if up != Next::Rest && down != Next::Rest => Next::Fork {
+            up: top.arc,
+            down: bottom.arc,
+        },
+        (true, true) => Next::Rest,
+        (true, false) => up,
+        (false, _) => down,
+    }
+}
+
+/// Where a snap ends.
+#[derive(Clone, Debug)]
+pub(super) enum Landing {
+    /// At rest, nothing in the way.
+    Rest,
+    /// On an arc.
+    On { arc: ArcId, half_turn: i64 },
+}
+
+/// The first arc that a snap meets from `place` on its way to rest, among those that exist just
+/// after its time; `dir` is −1 downward, +1 upward. `skip` holds the arcs at the place itself.
+pub(super) fn snap(
+    slice: &Slice,
+    x: &Algebraic,
+    mut half_turn: i64,
+    t: &Time,
+    dir: i32,
+    skip: &[Incident],
+) -> Landing {
+    let zero = Algebraic::from(Rat::zero());
+    let toward = if dir < 0 {
+        Ordering::Less
+    } else {
+        Ordering::Greater
+    };
+    let alive: [Vec<ArcId>; 2] = Chart::BOTH.map(|c| {
+        let ids = slice.arcs_in(c).iter().copied();
+        ids.filter(|&id| {
+            let a = slice.arc(id);
+            a.is_barrier() && slice.alive_after(a, t)
+        })
+        .collect()
+    });
+    let mut first = true;
+    loop {
+        let chart = Chart::of_half_turn(half_turn);
+        let mut best: Option<ArcId> = None;
+        for &id in &alive[chart.index()] {
+            let arc = slice.arc(id);
+            if first {
+                if skip.iter().any(|i| i.arc == id) || slice.cmp_after_const(arc, t, x) != toward {
+                    continue;
+                }
+            } else if skip.iter().any(|i| i.arc == id && i.half_turn == half_turn) {
+                continue;
+            }
+            if half_turn == 0 && slice.cmp_after_const(arc, t, &zero) != toward.reverse() {
+                continue;
+            }
+            let nearer = match best {
+                None => true,
+                Some(b) => {
+                    let o = slice.cmp_heights_after(id, b, t);
+                    o == toward.reverse()
+                        || (o.is_eq() && slice.arc(id).contact < slice.arc(b).contact)
+                }
+            };
+            if nearer {
+                best = Some(id);
+            }
+        }
+        if let Some(arc) = best {
+            return Landing::On { arc, half_turn };
+        }
+        if half_turn == 0 || alive.iter().all(Vec::is_empty) {
+            return Landing::Rest;
+        }
+        half_turn += i64::from(dir);
+        first = false;
+    }
+}
+
+/// The arcs that coincide with `arc` just after t, itself included, by contact.
+pub(super) fn group(slice: &Slice, arc: ArcId, t: &Time) -> Vec<ArcId> {
+    let mut ids: Vec<ArcId> = slice
+        .arcs_in(slice.arc(arc).chart)
+        .iter()
+        .copied()
+        .filter(|&b| {
+            b == arc
+                || (slice.arc(b).is_barrier()
+                    && slice.coincide(arc, b)
+                    && slice.alive_after(slice.arc(b), t))
+        })
+        .collect();
+    ids.sort_by_key(|&b| slice.arc(b).contact);
+    ids
+}
+
+/// The contacts of some arcs, sorted and without repetition.
+pub(super) fn contacts(slice: &Slice, arcs: &[ArcId]) -> Vec<Contact> {
+    let mut c: Vec<Contact> = arcs.iter().map(|&a| slice.arc(a).contact).collect();
+    c.sort();
+    c.dedup();
+    c
+}
+
+/// Whether a graph arc's curve has a vertical tangency at x.
+pub(super) fn is_tangency(slice: &Slice, arc: ArcId, x: &Algebraic) -> bool {
+    let a = slice.arc(arc);
+    if !matches!(a.shape, Shape::Graph { .. }) {
+        return false;
+    }
+    let (p, q) = slice.curve(a.curve).reduced(a.chart);
+    x.sign_of(&(p.derivative() * q - p * q.derivative())) == 0
+}

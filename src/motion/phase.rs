@@ -1,0 +1,934 @@
+//! One pawl through one phase: the simple algorithm (DP §9, "Simple Algorithm").
+//!
+//! The state is at rest or on an arc. Find the next time at which anything touches it, look at
+//! the place ([`super::local`]), go on. Each step costs O(n) box tests and few exact ones.
+
+use super::friction::stick_time;
+use super::local::{
+    Incident, Landing, Next, Place, State, at_rest_next, contacts, group, incident, is_tangency,
+    resolve, rests_on_level, right_sorted, settle, snap,
+};
+use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
+use crate::contact::{Chart, Contact};
+use crate::geometry::{Polygon, Vec2, interiors_intersect};
+use crate::number::{Algebraic, Rat};
+use crate::slice::{ArcId, Point, Shape, Slice, Time};
+
+/// What one pawl's run through a phase yields.
+#[derive(Debug)]
+pub struct Run {
+    /// Events, in order of time and kind.
+    pub events: Vec<Event>,
+    /// Segments, in order of time.
+    pub segments: Vec<Segment>,
+    /// How and when it ended before the phase did.
+    pub end: Option<(OutcomeKind, Time, Vec<Branch>)>,
+    /// Orientation at the end.
+    pub angle: Angle,
+    /// Orientation at the probe, or at the end where that is earlier.
+    pub probed: Angle,
+    /// Contacts that touch at the end.
+    pub touching: Vec<Contact>,
+}
+
+/// What a pawl's run needs besides the slice.
+pub struct Setting<'a> {
+    /// The pawl's polygon about its hinge, at θ = 0.
+    pub shape: &'a Polygon,
+    /// The obstacles.
+    pub obstacles: &'a [Polygon],
+    /// Angular stops.
+    pub limits: Option<&'a (Rat, Rat)>,
+    /// Coulomb's μ, where friction is modelled.
+    pub friction: Option<&'a Rat>,
+    /// Index of the phase.
+    pub phase: usize,
+    /// An instant at which the orientation is wanted (the root's collision).
+    pub probe: Option<&'a Rat>,
+    /// Asked between events; true ends the run undecided.
+    pub stop: &'a dyn Fn() -> bool,
+}
+
+struct Runner<'a> {
+    slice: &'a Slice,
+    set: &'a Setting<'a>,
+    end: Time,
+    zero: Algebraic,
+    state: State,
+    /// The last instant that was looked at.
+    clock: Time,
+    /// When the current segment began, and the turns then.
+    segment_from: Time,
+    segment_winding: i64,
+    /// Arcs that hold along the current segment, by contact; empty at rest.
+    held: Vec<ArcId>,
+    events: Vec<Event>,
+    segments: Vec<Segment>,
+    probed: Option<Angle>,
+    /// Where rest is touched: (time, arc), ascending.
+    rest_hits: Vec<Time>,
+}
+
+/// Runs a pawl from `start` through the phase of the slice. `touching` are the contacts already
+/// known (the end of the phase before), which are not reported anew.
+pub fn run(slice: &Slice, set: &Setting<'_>, start: &Angle, touching: &[Contact]) -> Run {
+    let zero = Algebraic::from(Rat::zero());
+    let mut rest_hits = Vec::new();
+    for &id in slice.arcs_in(Chart::Rest) {
+        let arc = slice.arc(id);
+        if arc.is_barrier() && arc.spans_x(&zero) {
+            rest_hits.push(match arc.shape {
+                Shape::Graph { .. } => slice.time_at(arc, &zero),
+                _ => arc.lo.t.clone(),
+            });
+        }
+    }
+    rest_hits.sort();
+    rest_hits.dedup();
+    let origin = Time::from(Rat::zero());
+    let mut r = Runner {
+        slice,
+        set,
+        end: Time::from(slice.frame.duration.clone()),
+        zero,
+        state: State::Rest,
+        clock: origin.clone(),
+        segment_from: origin,
+        segment_winding: start.winding(),
+        held: Vec::new(),
+        events: Vec::new(),
+        segments: Vec::new(),
+        probed: None,
+        rest_hits,
+    };
+    let stop = r.go(start, touching);
+    r.finish(stop)
+}
+
+/// How a run stopped: at the phase's end (with the orientation), or before it.
+enum Stop {
+    PhaseEnd(Angle),
+    Early {
+        kind: OutcomeKind,
+        at: Time,
+        angle: Angle,
+        branches: Vec<Branch>,
+    },
+}
+
+impl Runner<'_> {
+    fn go(&mut self, start: &Angle, touching: &[Contact]) -> Stop {
+        let origin = self.clock.clone();
+        if self.end <= origin {
+            return Stop::PhaseEnd(start.clone());
+        }
+        let z = Point {
+            chart: start.chart(),
+            x: start.x.clone(),
+            t: origin.clone(),
+            on: Vec::new(),
+        };
+        let inc = incident(self.slice, &Place::new(z.clone(), start.half_turn));
+        let next = self.begin(start, &z, &inc, touching);
+        let entry = Entry {
+            inc: &inc,
+            tangency: true,
+            known: Some(touching),
+        };
+        if let Some(stop) = self.enter(next, start.clone(), &origin, &entry) {
+            return stop;
+        }
+        let mut last = start.clone();
+        loop {
+            if (self.set.stop)() {
+                let at = self.clock.clone();
+                let angle = last;
+                return Stop::Early {
+                    kind: OutcomeKind::Undecided,
+                    at,
+                    angle,
+                    branches: vec![],
+                };
+            }
+            if let Some(stop) = self.step(&mut last) {
+                return stop;
+            }
+        }
+    }
+
+    // ── the start of a phase ────────────────────────────────────────────────────────────────
+
+    /// What follows at the first instant: the right limit, from nothing but the geometry.
+    fn begin(&self, start: &Angle, z: &Point, inc: &[Incident], touching: &[Contact]) -> Next {
+        let slice = self.slice;
+        let side = start.side();
+        let toward = Next::Snap(-side);
+        if inc.is_empty() {
+            return if side == 0 { Next::Rest } else { toward };
+        }
+        let place = Place::new(z.clone(), start.half_turn);
+        let right = right_sorted(slice, &place, inc);
+        let (Some(bottom), Some(top)) = (right.first(), right.last()) else {
+            return match self.free_along(z) {
+                true if side == 0 => Next::Rest,
+                true => toward,
+                false => self.no_interval(inc),
+            };
+        };
+        let up = self.free_beside(top.arc, true, &self.clock);
+        let down = self.free_beside(bottom.arc, false, &self.clock);
+        let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &self.clock);
+        if side == 0 && (up || down) {
+            let next = at_rest_next(slice, Some((top.clone(), bottom.clone())), up, down);
+            return match next {
+                Next::Rest => next,
+                _ if rests_on_level(slice, &place, inc, false, &free) => Next::Rest,
+                _ => next,
+            };
+        }
+        let (near_open, far_open) = if side > 0 { (down, up) } else { (up, down) };
+        let near = if side > 0 { top } else { bottom };
+        // What held the pawl in the phase before holds it still, if it can.
+        if near_open && !(far_open && touching.contains(&slice.arc(near.arc).contact)) {
+            return toward;
+        }
+        if far_open {
+            return settle(slice, Some(near.clone()), side > 0, false);
+        }
+        // A cusp that opens here: between two neighbouring arcs.
+        let cusps: Vec<usize> = (0..right.len() - 1)
+            .filter(|&i| self.free_beside(right[i].arc, true, &self.clock))
+            .collect();
+        let pick = if side >= 0 {
+            cusps.first()
+        } else {
+            cusps.last()
+        };
+        let Some(&i) = pick else {
+            return self.no_interval(inc);
+        };
+        if side == 0 {
+            let below = settle(slice, Some(right[i].clone()), true, true);
+            if below != Next::Rest {
+                return below;
+            }
+            return settle(slice, Some(right[i + 1].clone()), false, true);
+        }
+        let near = if side > 0 { &right[i] } else { &right[i + 1] };
+        settle(slice, Some(near.clone()), side > 0, false)
+    }
+
+    fn no_interval(&self, inc: &[Incident]) -> Next {
+        let arcs: Vec<ArcId> = inc.iter().map(|i| i.arc).collect();
+        let wall = |i: &Incident| i.germs.up || i.germs.down;
+        let curve = |a: ArcId| self.slice.arc(a).curve;
+        let single = inc.iter().any(wall) || arcs.windows(2).all(|w| curve(w[0]) == curve(w[1]));
+        Next::Jam { arcs, single }
+    }
+
+    /// Whether the side of an arc is free just after `from`: by one polygon test at a rational
+    /// point beside it, before anything meets the arc.
+    fn free_beside(&self, id: ArcId, above: bool, from: &Time) -> bool {
+        let slice = self.slice;
+        let arc = slice.arc(id);
+        let mut until = arc.end().t.clone();
+        for &b in slice.arcs_in(arc.chart) {
+            if b != id
+                && let Some(p) = slice.first_meeting(id, b, from, &until)
+            {
+                until = p.t;
+            }
+        }
+        let t = Time::between(from, &until);
+        match slice.height_at(arc, &t) {
+            Some(x) => self.free_near(arc.chart, &x, &t, above),
+            None => false,
+        }
+    }
+
+    /// What must hold just after an instant, by the polygons alone: the state's own interval is
+    /// free beside it, and at rest nothing penetrates. Asked by debug assertions only.
+    fn holds_after(&self, at: &Time) -> bool {
+        match self.state {
+            State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
+            State::Rest => {
+                let next = self.rest_hits.iter().find(|t| *t > at);
+                let soon = at.shift(&Rat::one());
+                let t = Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
+                self.free_at(Chart::Rest, &Rat::zero(), &t)
+            }
+        }
+    }
+
+    /// Whether the configuration is free just after the start along the horizontal through z,
+    /// where no arc leaves z to the right.
+    fn free_along(&self, z: &Point) -> bool {
+        let slice = self.slice;
+        let mut until = Time::from(Rat::one());
+        for &b in slice.arcs_in(z.chart) {
+            let arc = slice.arc(b);
+            if !arc.spans_x(&z.x) {
+                continue;
+            }
+            let t = match arc.shape {
+                Shape::Graph { .. } => slice.time_at(arc, &z.x),
+                _ => arc.lo.t.clone(),
+            };
+            if t > self.clock && t < until {
+                until = t;
+            }
+        }
+        self.free_near(z.chart, &z.x, &Time::between(&self.clock, &until), true)
+    }
+
+    /// The polygon test at time t and an orientation just above (or below) x, nearer than any
+    /// other arc at that time.
+    fn free_near(&self, chart: Chart, x: &Algebraic, t: &Rat, above: bool) -> bool {
+        let slice = self.slice;
+        let seam = Algebraic::from(Rat::from(if above { 1 } else { -1 }));
+        let mut bound = seam;
+        for &b in slice.arcs_in(chart) {
+            let arc = slice.arc(b);
+            let when = Time::from(t.clone());
+            if arc.start().t > when || arc.end().t < when {
+                continue;
+            }
+            let Some(h) = slice.height_at(arc, t) else {
+                continue;
+            };
+            if above && h > *x && h < bound || !above && h < *x && h > bound {
+                bound = h;
+            }
+        }
+        if bound == *x {
+            // At the seam itself: look from the other chart.
+            let x = Algebraic::from(Rat::from(if above { -1 } else { 1 }));
+            return self.free_near(chart.other(), &x, t, above);
+        }
+        let at = Algebraic::between(x, &bound);
+        if let Some((lo, hi)) = self.set.limits {
+            let angle = Angle {
+                half_turn: chart.index() as i64,
+                x: Algebraic::from(at.clone()),
+            };
+            // Stops leave less than a turn, so any lift that lies between them will do.
+            let (lo, hi) = (Angle::from_tan_half(lo), Angle::from_tan_half(hi));
+            let inside = [0, -2].iter().any(|turn| {
+                let a = Angle {
+                    half_turn: angle.half_turn + turn,
+                    x: angle.x.clone(),
+                };
+                lo.cmp(&a).is_lt() && a.cmp(&hi).is_lt()
+            });
+            if !inside {
+                return false;
+            }
+        }
+        self.free_at(chart, &at, t)
+    }
+
+    /// Whether the pawl's interior is clear of every obstacle's at a rational time and position.
+    fn free_at(&self, chart: Chart, at: &Rat, t: &Rat) -> bool {
+        let slice = self.slice;
+        let p = &slice.frame.p0 + &slice.frame.v.scale(t);
+        let ring = self.set.shape.rings()[0]
+            .iter()
+            .map(|a| {
+                let turned = a.rotate_tan_half(at);
+                let turned = if chart == Chart::Back {
+                    -&turned
+                } else {
+                    turned
+                };
+                &turned + &p
+            })
+            .collect::<Vec<Vec2>>();
+        let moved = Polygon::new(ring, Vec::new());
+        !self
+            .set
+            .obstacles
+            .iter()
+            .any(|o| interiors_intersect(&moved, o))
+    }
+
+    // ── steps ───────────────────────────────────────────────────────────────────────────────
+
+    /// From the current state to the next time at which something touches it.
+    fn step(&mut self, last: &mut Angle) -> Option<Stop> {
+        let (z, half_turn) = match self.state {
+            State::Rest => {
+                let hit = self
+                    .rest_hits
+                    .iter()
+                    .find(|t| **t > self.clock && **t <= self.end);
+                let hit = hit.cloned();
+                self.probe(hit.as_ref());
+                let Some(t) = hit else {
+                    return Some(self.complete(Angle::rest()));
+                };
+                let z = Point {
+                    chart: Chart::Rest,
+                    x: self.zero.clone(),
+                    t,
+                    on: Vec::new(),
+                };
+                (z, 0)
+            }
+            State::On { arc, half_turn, .. } => {
+                let next = self.next_on(arc, half_turn);
+                if let Some(mu) = self.set.friction
+                    && let Some(t) = stick_time(self.slice, arc, &self.clock, mu)
+                    && t < self.end
+                    && next.as_ref().is_none_or(|z| t < z.t)
+                {
+                    self.probe(Some(&t));
+                    return Some(self.stick(arc, half_turn, t));
+                }
+                self.probe(next.as_ref().map(|z| &z.t));
+                match next {
+                    Some(z) => (z, half_turn),
+                    None => {
+                        let x = self.position(arc, &self.end.clone());
+                        return Some(self.complete(Angle { half_turn, x }));
+                    }
+                }
+            }
+        };
+        let angle = Angle {
+            half_turn,
+            x: z.x.clone(),
+        };
+        *last = angle.clone();
+        let at = z.t.clone();
+        let at_rest = half_turn == 0 && z.chart == Chart::Rest && z.x.sign() == 0;
+        let tangency = match self.state {
+            State::On { arc, .. } => is_tangency(self.slice, arc, &z.x),
+            State::Rest => false,
+        };
+        let place = Place::new(z, half_turn);
+        let inc = incident(self.slice, &place);
+        let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &at);
+        let next = resolve(self.slice, &place, &inc, self.state, at_rest, &free);
+        self.enter(
+            next,
+            angle,
+            &at,
+            &Entry {
+                inc: &inc,
+                tangency,
+                known: None,
+            },
+        )
+    }
+
+    /// Notes the orientation at the probe if the state passes it before `next`.
+    fn probe(&mut self, next: Option<&Time>) {
+        let Some(t) = self.set.probe.filter(|_| self.probed.is_none()) else {
+            return;
+        };
+        if next.is_some_and(|n| n.cmp_rat(t).is_le()) {
+            return;
+        }
+        self.probed = Some(match self.state {
+            State::Rest => Angle::rest(),
+            State::On { arc, half_turn, .. } => Angle {
+                half_turn,
+                x: self.position(arc, &Time::from(t.clone())),
+            },
+        });
+    }
+
+    /// The next point at which anything meets the arc that the state follows.
+    fn next_on(&self, id: ArcId, half_turn: i64) -> Option<Point> {
+        let slice = self.slice;
+        let arc = slice.arc(id);
+        let mut until = self.end.clone();
+        let mut best: Option<Point> = None;
+        let mut take = |p: Point, until: &mut Time| {
+            if p.t > self.clock && p.t <= *until && best.as_ref().is_none_or(|b| p.t < b.t) {
+                *until = p.t.clone();
+                best = Some(p);
+            }
+        };
+        let end = arc.end();
+        take(
+            Point {
+                chart: arc.chart,
+                x: end.x.clone(),
+                t: end.t.clone(),
+                on: vec![arc.curve],
+            },
+            &mut until,
+        );
+        if half_turn == 0 && matches!(arc.shape, Shape::Graph { .. }) && arc.spans_x(&self.zero) {
+            let t = slice.time_at(arc, &self.zero);
+            let x = self.zero.clone();
+            take(
+                Point {
+                    chart: arc.chart,
+                    x,
+                    t,
+                    on: vec![arc.curve],
+                },
+                &mut until,
+            );
+        }
+        for &b in slice.arcs_in(arc.chart) {
+            if b != id
+                && slice.arc(b).is_barrier()
+                && let Some(p) = slice.first_meeting(id, b, &self.clock, &until)
+            {
+                take(p, &mut until);
+            }
+        }
+        if arc.shape == Shape::Level && arc.lo.x.cmp_rat(&Rat::from(-1)).is_eq() {
+            // On the seam: what comes from below lives in the other chart.
+            let one = Rat::one();
+            for &b in slice.arcs_in(arc.chart.other()) {
+                let other = slice.arc(b);
+                if other.is_barrier() && other.hi.x.cmp_rat(&one).is_eq() {
+                    let t = other.hi.t.clone();
+                    if t <= arc.hi.t {
+                        let x = arc.lo.x.clone();
+                        take(
+                            Point {
+                                chart: arc.chart,
+                                x,
+                                t,
+                                on: Vec::new(),
+                            },
+                            &mut until,
+                        );
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// The position of an arc at an instant within it.
+    fn position(&self, id: ArcId, t: &Time) -> Algebraic {
+        let slice = self.slice;
+        let arc = slice.arc(id);
+        if arc.shape == Shape::Level {
+            return arc.lo.x.clone();
+        }
+        for e in [&arc.lo, &arc.hi] {
+            if e.t == *t {
+                return e.x.clone();
+            }
+        }
+        let exact = t.exact();
+        if let Some(r) = exact.to_rat()
+            && let Some(x) = slice.height_at(arc, &r)
+        {
+            return x;
+        }
+        let (p, q) = slice.curve(arc.curve).reduced(arc.chart);
+        exact.root_over(p, q, &mut |bits| {
+            let (lo, hi) = exact.enclosure(bits);
+            // Outside its span the arc is bounded by its own ends.
+            let at = |t: &Rat| {
+                if arc.start().t.cmp_rat(t).is_ge() {
+                    arc.start().x.clone()
+                } else if arc.end().t.cmp_rat(t).is_le() {
+                    arc.end().x.clone()
+                } else {
+                    slice
+                        .height_at(arc, t)
+                        .unwrap_or_else(|| arc.start().x.clone())
+                }
+            };
+            let (a, b) = (at(&lo), at(&hi));
+            let (a, b) = if a <= b { (a, b) } else { (b, a) };
+            (a.enclosure(bits).0, b.enclosure(bits).1)
+        })
+    }
+
+    // ── what happens at an instant ──────────────────────────────────────────────────────────
+
+    fn event(&mut self, kind: EventKind, at: &Time, angle: &Angle, contacts: Vec<Contact>) {
+        self.events.push(Event {
+            kind,
+            time: at.clone(),
+            phase: self.set.phase,
+            angle: angle.clone(),
+            to: None,
+            contacts,
+            root_contacts: Vec::new(),
+        });
+    }
+
+    /// Carries out what follows at an instant: reports it and changes the state.
+    fn enter(&mut self, next: Next, angle: Angle, at: &Time, entry: &Entry<'_>) -> Option<Stop> {
+        let last = *at == self.end;
+        let stop = match next {
+            Next::Rest => {
+                self.come_to_rest(&angle, at, entry);
+                None
+            }
+            Next::Follow {
+                arc,
+                half_turn,
+                lower,
+            } => self.follow(arc, half_turn, lower, &angle, at, entry),
+            // What would begin at a phase's last instant belongs to the next phase.
+            Next::Snap(_) if last => None,
+            Next::Snap(dir) => self.snap(dir, &angle, at, entry),
+            Next::Jam { arcs, single } => {
+                let mut touching = contacts(self.slice, &arcs);
+                touching.extend(contacts(self.slice, &self.held));
+                touching.sort();
+                touching.dedup();
+                if last {
+                    self.touch(at, &angle, touching);
+                    None
+                } else {
+                    let kind = if single {
+                        EventKind::JamSingle
+                    } else {
+                        EventKind::JamIncompatible
+                    };
+                    Some(self.early(OutcomeKind::Jammed, kind, at, angle.clone(), touching))
+                }
+            }
+            Next::Fork { up, down } => self.fork(up, down, &angle, at, last),
+        };
+        self.clock = at.clone();
+        debug_assert!(
+            stop.is_some() || last || self.holds_after(at),
+            "the state's interval is free"
+        );
+        match stop {
+            None if last => Some(self.complete(angle)),
+            stop => stop,
+        }
+    }
+
+    fn come_to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
+        if self.held.is_empty() {
+            // A touch without effect, where nothing was touching before or is after.
+            let lying = |i: &Incident| self.slice.arc(i.arc).shape == Shape::Level;
+            if entry.known.is_none() && !entry.inc.is_empty() && !entry.inc.iter().any(lying) {
+                let arcs: Vec<ArcId> = entry.inc.iter().map(|i| i.arc).collect();
+                self.event(EventKind::Graze, at, angle, contacts(self.slice, &arcs));
+            }
+        } else {
+            let released = contacts(self.slice, &self.held);
+            self.cut(at, angle, angle);
+            self.event(EventKind::Release, at, angle, released);
+        }
+        self.held.clear();
+        self.state = State::Rest;
+    }
+
+    fn follow(
+        &mut self,
+        arc: ArcId,
+        half_turn: i64,
+        lower: bool,
+        angle: &Angle,
+        at: &Time,
+        entry: &Entry<'_>,
+    ) -> Option<Stop> {
+        let slice = self.slice;
+        let arcs = group(slice, arc, at);
+        let first = arcs.first().copied().unwrap_or(arc);
+        let (old, new) = (contacts(slice, &self.held), contacts(slice, &arcs));
+        let same = self.same_constraint(first, &arcs);
+        let mut fresh: Vec<Contact> = new.iter().filter(|c| !old.contains(c)).copied().collect();
+        if fresh.is_empty() {
+            fresh = new.clone();
+        }
+        let limit = new.iter().all(|c| matches!(c, Contact::Limit(_)));
+        let kind = match (entry.known, self.state) {
+            (Some(known), _) if new.iter().all(|c| known.contains(c)) => None,
+            (Some(_), _) if limit => Some(EventKind::LimitStop),
+            (Some(_), _) if angle.side() != 0 => None,
+            (_, State::Rest) if limit => Some(EventKind::LimitStop),
+            (_, State::Rest) => Some(EventKind::TranslationalCollision),
+            _ if same => None,
+            _ if limit => Some(EventKind::LimitStop),
+            _ => Some(EventKind::SlidingCollision),
+        };
+        // A seam, or the joint of a split edge, cuts the segment and is no event; so does a
+        // point where the discriminant vanishes, since the branch changes there.
+        let key = |id: ArcId| {
+            let a = slice.arc(id);
+            (a.curve, a.branch, a.shape == Shape::Level)
+        };
+        if old != new || self.held.first().map(|&h| key(h)) != Some(key(first)) {
+            self.cut(at, angle, angle);
+        }
+        if let Some(kind) = kind {
+            self.event(kind, at, angle, fresh);
+        }
+        self.held = arcs;
+        self.state = State::On {
+            arc: first,
+            half_turn,
+            lower,
+        };
+        if same || *at == self.end {
+            return None;
+        }
+        self.hold(first, half_turn, at, angle)
+    }
+
+    /// Sticks at once where friction holds the contact that the state has begun to follow.
+    fn hold(&mut self, arc: ArcId, _half_turn: i64, at: &Time, angle: &Angle) -> Option<Stop> {
+        let mu = self.set.friction?;
+        let t = stick_time(self.slice, arc, at, mu)?;
+        if t != *at {
+            return None;
+        }
+        let touching = contacts(self.slice, &self.held);
+        Some(self.early(
+            OutcomeKind::Stuck,
+            EventKind::Stick,
+            at,
+            angle.clone(),
+            touching,
+        ))
+    }
+
+    /// Sticks on the way along an arc.
+    fn stick(&mut self, arc: ArcId, half_turn: i64, at: Time) -> Stop {
+        let angle = Angle {
+            half_turn,
+            x: self.position(arc, &at),
+        };
+        let touching = contacts(self.slice, &self.held);
+        self.early(OutcomeKind::Stuck, EventKind::Stick, &at, angle, touching)
+    }
+
+    /// Ends the run with an event.
+    fn early(
+        &mut self,
+        kind: OutcomeKind,
+        event: EventKind,
+        at: &Time,
+        angle: Angle,
+        touching: Vec<Contact>,
+    ) -> Stop {
+        self.cut(at, &angle, &angle);
+        self.event(event, at, &angle, touching);
+        Stop::Early {
+            kind,
+            at: at.clone(),
+            angle,
+            branches: Vec::new(),
+        }
+    }
+
+    /// The snap: pure rotation towards rest, up to the first arc in the way (DP §8.1).
+    fn snap(&mut self, dir: i32, angle: &Angle, at: &Time, entry: &Entry<'_>) -> Option<Stop> {
+        let slice = self.slice;
+        let released = contacts(slice, &self.held);
+        let landing = snap(slice, &angle.x, angle.half_turn, at, dir, entry.inc);
+        let (to, target) = match landing {
+            Landing::Rest => (Angle::rest(), None),
+            Landing::On { arc, half_turn } => (
+                Angle {
+                    half_turn,
+                    x: self.position(arc, at),
+                },
+                Some((arc, half_turn)),
+            ),
+        };
+        self.cut(at, angle, &to);
+        let kind = if entry.tangency {
+            EventKind::SnapFree
+        } else {
+            EventKind::SnapFreeVertex
+        };
+        self.event(kind, at, angle, released);
+        if let Some(e) = self.events.last_mut() {
+            e.to = Some(to.clone());
+        }
+        let Some((arc, half_turn)) = target else {
+            self.held.clear();
+            self.state = State::Rest;
+            return None;
+        };
+        self.held = group(slice, arc, at);
+        let first = self.held.first().copied().unwrap_or(arc);
+        self.state = State::On {
+            arc: first,
+            half_turn,
+            lower: dir < 0,
+        };
+        let touching = contacts(slice, &self.held);
+        let limit = touching.iter().all(|c| matches!(c, Contact::Limit(_)));
+        self.event(EventKind::SnapLanding, at, &to, touching.clone());
+        if limit {
+            self.event(EventKind::LimitStop, at, &to, touching);
+        }
+        self.hold(first, half_turn, at, &to)
+    }
+
+    /// Struck at rest so that both ways round are open.
+    fn fork(
+        &mut self,
+        up: ArcId,
+        down: ArcId,
+        angle: &Angle,
+        at: &Time,
+        last: bool,
+    ) -> Option<Stop> {
+        let slice = self.slice;
+        let mut branches = Vec::new();
+        for (direction, arc) in [(1, up), (-1, down)] {
+            let arcs = group(slice, arc, at);
+            let first = arcs.first().copied().unwrap_or(arc);
+            let sticks = self
+                .set
+                .friction
+                .and_then(|mu| stick_time(slice, first, at, mu))
+                .is_some_and(|t| t == *at);
+            branches.push(Branch {
+                direction,
+                contacts: contacts(slice, &arcs),
+                sticks,
+            });
+        }
+        let mut all: Vec<Contact> = branches.iter().flat_map(|b| b.contacts.clone()).collect();
+        all.sort();
+        all.dedup();
+        if last {
+            self.touch(at, angle, all);
+            return None;
+        }
+        if branches.iter().all(|b| b.sticks) {
+            return Some(self.early(OutcomeKind::Stuck, EventKind::Stick, at, angle.clone(), all));
+        }
+        let (kind, event) = (OutcomeKind::Bifurcated, EventKind::Bifurcation);
+        match self.early(kind, event, at, angle.clone(), all) {
+            Stop::Early {
+                kind, at, angle, ..
+            } => Some(Stop::Early {
+                kind,
+                at,
+                angle,
+                branches,
+            }),
+            stop => Some(stop),
+        }
+    }
+
+    /// Reports contacts made at a phase's last instant.
+    fn touch(&mut self, at: &Time, angle: &Angle, mut fresh: Vec<Contact>) {
+        let old = contacts(self.slice, &self.held);
+        fresh.retain(|c| !old.contains(c));
+        if !fresh.is_empty() {
+            let kind = match self.state {
+                State::Rest => EventKind::TranslationalCollision,
+                State::On { .. } => EventKind::SlidingCollision,
+            };
+            self.event(kind, at, angle, fresh);
+        }
+    }
+
+    /// Whether going on along `arc` is no change of constraint.
+    fn same_constraint(&self, arc: ArcId, arcs: &[ArcId]) -> bool {
+        let State::On { arc: before, .. } = self.state else {
+            return false;
+        };
+        let (a, b) = (self.slice.arc(before), self.slice.arc(arc));
+        let one_curve = a.curve == b.curve
+            && (a.branch == b.branch || a.shape == Shape::Level || b.shape == Shape::Level);
+        one_curve || self.slice.coincide(before, arc) || arcs.iter().any(|x| self.held.contains(x))
+    }
+
+    // ── segments and the end ────────────────────────────────────────────────────────────────
+
+    /// Ends the current segment; the next one begins with the orientation `after`.
+    fn cut(&mut self, at: &Time, before: &Angle, after: &Angle) {
+        if *at > self.segment_from {
+            let sliding = self.held.first().map(|&first| {
+                let arc = self.slice.arc(first);
+                let curve = self.slice.curve(arc.curve);
+                let also = contacts(self.slice, &self.held);
+                Sliding {
+                    contact: arc.contact,
+                    also: also.into_iter().filter(|c| *c != arc.contact).collect(),
+                    p: curve.p.clone(),
+                    q: curve.q.clone(),
+                    branch: arc.branch,
+                }
+            });
+            self.segments.push(Segment {
+                phase: self.set.phase,
+                from: self.segment_from.clone(),
+                to: at.clone(),
+                winding: [self.segment_winding, before.winding()],
+                sliding,
+            });
+        }
+        self.segment_from = at.clone();
+        self.segment_winding = after.winding();
+    }
+
+    fn complete(&mut self, angle: Angle) -> Stop {
+        let end = self.end.clone();
+        self.cut(&end, &angle, &angle);
+        Stop::PhaseEnd(angle)
+    }
+
+    fn finish(mut self, stop: Stop) -> Run {
+        let (angle, end) = match stop {
+            Stop::PhaseEnd(angle) => (angle, None),
+            Stop::Early {
+                kind,
+                at,
+                angle,
+                branches,
+            } => (angle, Some((kind, at, branches))),
+        };
+        let mut touching = Vec::new();
+        if end.is_none() {
+            let on = self.held.iter().map(|&h| self.slice.arc(h).curve).collect();
+            let z = Point {
+                chart: angle.chart(),
+                x: angle.x.clone(),
+                t: self.end.clone(),
+                on,
+            };
+            let inc = incident(self.slice, &Place::new(z, angle.half_turn));
+            let arcs: Vec<ArcId> = inc.iter().map(|i| i.arc).collect();
+            touching = contacts(self.slice, &arcs);
+        }
+        // One kind at one instant is one event; kinds follow in the contract's order. Grouping is
+        // stable in time, since events are made in order of time.
+        let mut events: Vec<Event> = Vec::new();
+        for e in std::mem::take(&mut self.events) {
+            match events.last_mut() {
+                Some(l) if l.kind == e.kind && l.time == e.time && l.to.is_none() => {
+                    l.contacts.extend(e.contacts);
+                    l.contacts.sort();
+                    l.contacts.dedup();
+                }
+                _ => events.push(e),
+            }
+        }
+        let probed = self.probed.unwrap_or_else(|| angle.clone());
+        Run {
+            events,
+            segments: self.segments,
+            end,
+            angle,
+            probed,
+            touching,
+        }
+    }
+}
+
+/// How an instant was reached.
+struct Entry<'a> {
+    /// The arcs at the place.
+    inc: &'a [Incident],
+    /// Whether the curve that the state followed is vertically tangent there.
+    tangency: bool,
+    /// At the start of a phase: the contacts that are known to touch.
+    known: Option<&'a [Contact]>,
+}

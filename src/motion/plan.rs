@@ -1,0 +1,305 @@
+//! Plans: phases one after the other, all pawls and the root together.
+
+use super::phase::{Run, Setting, run};
+use super::root::{first_collision, obstacle_polygon};
+use super::trajectory::{
+    Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
+    Trajectory,
+};
+use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
+use crate::geometry::{Polygon, Vec2};
+use crate::number::Rat;
+use crate::scene::{Motion, Scene};
+use crate::slice::{Slice, Time};
+use std::time::Instant;
+
+/// How a simulation is to run.
+#[derive(Default)]
+pub struct Options<'a> {
+    /// When to give up, undecided.
+    pub deadline: Option<Instant>,
+    /// Told after each phase: phases done, phases in all, time reached, total time if known.
+    pub progress: Option<&'a dyn Fn(Progress)>,
+}
+
+/// How far a simulation has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Index of the phase at hand.
+    pub phase: usize,
+    /// Phases in all.
+    pub phases: usize,
+    /// Index of the pawl at hand.
+    pub pawl: usize,
+    /// Contact arcs of that pawl in that phase.
+    pub arcs: usize,
+}
+
+/// A plan that cannot be carried out; what the scene's reader cannot see.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PlanError {
+    /// `until = "root-collision"` without a duration, and the root never collides.
+    NeverCollides {
+        /// Index of the phase.
+        phase: usize,
+    },
+    /// `reverse` with no phase before it, or `until` without a root; a reader refuses both.
+    Impossible {
+        /// Index of the phase.
+        phase: usize,
+    },
+}
+
+impl std::fmt::Display for PlanError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            PlanError::NeverCollides { phase } => write!(
+                f,
+                "phase {phase} is to last until the root collides, but the root never does; \
+                 give it a duration as an upper bound"
+            ),
+            PlanError::Impossible { phase } => {
+                write!(f, "phase {phase} cannot be carried out as written")
+            }
+        }
+    }
+}
+
+impl std::error::Error for PlanError {}
+
+/// Simulates a scene exactly (DP Def. 2.1) by the simple algorithm.
+///
+/// # Errors
+/// [`PlanError`] where the plan asks for what cannot be.
+pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, PlanError> {
+    let obstacles: Vec<ObstacleShape> = scene.obstacles.iter().map(ObstacleShape::new).collect();
+    let fixed: Vec<Polygon> = scene.obstacles.iter().map(obstacle_polygon).collect();
+    let shapes: Vec<PawlShape> = scene.pawls.iter().map(PawlShape::new).collect();
+    let turning: Vec<Polygon> = shapes
+        .iter()
+        .map(|s| Polygon::new(s.ring.vertices.clone(), Vec::new()))
+        .collect();
+    let mut angles: Vec<Angle> = scene
+        .pawls
+        .iter()
+        .map(|p| Angle::from_tan_half(&p.start))
+        .collect();
+    let mut touching: Vec<Vec<Contact>> = vec![Vec::new(); scene.pawls.len()];
+    let mut pawls: Vec<PawlTrace> = scene
+        .pawls
+        .iter()
+        .map(|p| PawlTrace {
+            name: p.name.clone(),
+            events: Vec::new(),
+            segments: Vec::new(),
+        })
+        .collect();
+    let mut phases: Vec<Phase> = Vec::new();
+    let mut offset = Vec2::default();
+    let mut clock = Rat::zero();
+    let mut before: Option<(Vec2, Rat)> = None;
+    let stop = || options.deadline.is_some_and(|d| Instant::now() >= d);
+    for (index, motion) in scene.motions.iter().enumerate() {
+        let plan = schedule(scene, index, motion, &offset, before.as_ref())?;
+        let end = Time::from(plan.duration.clone());
+        let mut phase = Phase {
+            from: clock.clone(),
+            to: end.clone(),
+            offset: offset.clone(),
+            velocity: plan.velocity.clone(),
+        };
+        let mut runs: Vec<Run> = Vec::with_capacity(scene.pawls.len());
+        for (i, pawl) in scene.pawls.iter().enumerate() {
+            let frame = Frame {
+                p0: &pawl.hinge + &offset,
+                v: plan.velocity.clone(),
+                duration: plan.duration.clone(),
+            };
+            let slice = Slice::new(frame, &shapes[i], &obstacles, pawl.limits.as_ref());
+            if let Some(report) = options.progress {
+                let phases = scene.motions.len();
+                report(Progress {
+                    phase: index,
+                    phases,
+                    pawl: i,
+                    arcs: slice.arcs().len(),
+                });
+            }
+            let set = Setting {
+                shape: &turning[i],
+                obstacles: &fixed,
+                limits: pawl.limits.as_ref(),
+                friction: scene.friction.as_ref(),
+                phase: index,
+                probe: plan.collision.as_ref().map(|c| &c.0),
+                stop: &stop,
+            };
+            runs.push(run(&slice, &set, &angles[i], &touching[i]));
+        }
+        // The first end of any kind ends the plan; at one instant the graver kind, then the first
+        // pawl of the file.
+        let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
+            .iter()
+            .enumerate()
+            .filter_map(|(i, r)| r.end.as_ref().map(|e| (e.1.clone(), e.0, Some(i))))
+            .collect();
+        if let Some((t, _)) = plan.collision.as_ref().filter(|_| !plan.until_collision) {
+            ends.push((Time::from(t.clone()), OutcomeKind::RootCollision, None));
+        }
+        ends.sort();
+        let over = ends.into_iter().next();
+        let cut = over.as_ref().map_or(end.clone(), |o| o.0.clone());
+        if let Some((t, kind, pawl)) = &over {
+            phase.to = t.clone();
+            let branches = match pawl {
+                Some(i) => runs[*i]
+                    .end
+                    .as_ref()
+                    .map(|e| e.2.clone())
+                    .unwrap_or_default(),
+                None => Vec::new(),
+            };
+            phases.push(phase);
+            for (i, r) in runs.into_iter().enumerate() {
+                append(&mut pawls[i], r, &cut, &plan, index, false);
+            }
+            let outcome = Outcome {
+                kind: *kind,
+                time: t.clone(),
+                phase: index,
+                pawl: *pawl,
+                branches,
+            };
+            return Ok(Trajectory {
+                phases,
+                outcome,
+                pawls,
+            });
+        }
+        phases.push(phase);
+        let last = index + 1 == scene.motions.len();
+        for (i, r) in runs.into_iter().enumerate() {
+            angles[i] = r.angle.clone();
+            touching[i] = r.touching.clone();
+            append(&mut pawls[i], r, &cut, &plan, index, true);
+            if last && let Some(e) = pawls[i].events.last().cloned() {
+                pawls[i].events.push(Event {
+                    kind: EventKind::PlanEnd,
+                    ..e
+                });
+            }
+        }
+        offset = &offset + &plan.velocity.scale(&plan.duration);
+        clock += &plan.duration;
+        before = Some((plan.velocity.clone(), plan.duration.clone()));
+    }
+    let last = phases.len().saturating_sub(1);
+    let time = phases
+        .last()
+        .map_or(Time::from(Rat::zero()), |p| p.to.clone());
+    let outcome = Outcome {
+        kind: OutcomeKind::Completed,
+        time,
+        phase: last,
+        pawl: None,
+        branches: Vec::new(),
+    };
+    Ok(Trajectory {
+        phases,
+        outcome,
+        pawls,
+    })
+}
+
+/// One phase with its duration known.
+struct Schedule {
+    velocity: Vec2,
+    duration: Rat,
+    until_collision: bool,
+    /// The root's collision within the phase, or at its end where the phase lasts until then.
+    collision: Option<(Rat, Vec<RootContact>)>,
+}
+
+fn schedule(
+    scene: &Scene,
+    phase: usize,
+    motion: &Motion,
+    offset: &Vec2,
+    before: Option<&(Vec2, Rat)>,
+) -> Result<Schedule, PlanError> {
+    let (velocity, bound, until_collision) = match motion {
+        Motion::Translate {
+            velocity,
+            duration,
+            until_root_collision,
+        } => (velocity.clone(), duration.clone(), *until_root_collision),
+        Motion::Reverse => {
+            let (v, d) = before.ok_or(PlanError::Impossible { phase })?;
+            (-v, Some(d.clone()), false)
+        }
+    };
+    let collision = scene.root.as_ref().and_then(|root| {
+        first_collision(root, &scene.obstacles, offset, &velocity, bound.as_ref())
+    });
+    let duration = match (&collision, bound, until_collision) {
+        (Some((t, _)), _, true) => t.clone(),
+        (_, Some(d), _) => d,
+        (None, None, true) if scene.root.is_some() => {
+            return Err(PlanError::NeverCollides { phase });
+        }
+        _ => return Err(PlanError::Impossible { phase }),
+    };
+    Ok(Schedule {
+        velocity,
+        duration,
+        until_collision,
+        collision,
+    })
+}
+
+/// Adds a run to a pawl's history, up to the instant at which the plan went over.
+fn append(
+    pawl: &mut PawlTrace,
+    run: Run,
+    cut: &Time,
+    plan: &Schedule,
+    phase: usize,
+    completed: bool,
+) {
+    pawl.events
+        .extend(run.events.into_iter().filter(|e| e.time <= *cut));
+    for s in run.segments {
+        if s.from >= *cut {
+            break;
+        }
+        let to = if s.to > *cut {
+            cut.clone()
+        } else {
+            s.to.clone()
+        };
+        pawl.segments.push(Segment { to, ..s });
+    }
+    let (angle, probed) = (run.angle, run.probed);
+    let event = |kind, root_contacts: Vec<RootContact>| Event {
+        kind,
+        time: cut.clone(),
+        phase,
+        angle: if kind == EventKind::RootCollision {
+            probed.clone()
+        } else {
+            angle.clone()
+        },
+        to: None,
+        contacts: Vec::new(),
+        root_contacts,
+    };
+    if let Some((t, contacts)) = &plan.collision
+        && cut.cmp_rat(t).is_eq()
+    {
+        pawl.events
+            .push(event(EventKind::RootCollision, contacts.clone()));
+    }
+    if completed {
+        pawl.events.push(event(EventKind::PhaseEnd, Vec::new()));
+    }
+}

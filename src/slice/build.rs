@@ -1,0 +1,775 @@
+//! From patches to arcs: break points along x, one sample in every gap.
+
+use super::{Arc, ArcId, Curve, CurveId, End, Shape, Side, Time};
+use crate::contact::{
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
+};
+use crate::geometry::Vec2;
+use crate::number::{Algebraic, Int, Interval, Poly, Rat};
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::sync::Mutex;
+
+/// The slice of one pawl over one phase: its arcs, and what is known of their crossings.
+#[derive(Debug)]
+pub struct Slice {
+    /// The phase as the hinge sees it.
+    pub frame: Frame,
+    pub(super) curves: Vec<Curve>,
+    pub(super) arcs: Vec<Arc>,
+    pub(super) by_chart: [Vec<ArcId>; 2],
+    /// The patch that each arc was cut from (none for a limit stop).
+    pub(super) patch_of: Vec<Option<u32>>,
+    pub(super) patches: Vec<Patch>,
+    pub(super) crossings: Mutex<super::predicates::CrossCache>,
+}
+
+impl Slice {
+    /// Builds the arcs of a pawl against the obstacles over a phase, with its angular stops.
+    ///
+    /// Cost: O(n) patches within reach, each a constant number of quadratics.
+    pub fn new(
+        frame: Frame,
+        pawl: &PawlShape,
+        obstacles: &[ObstacleShape],
+        limits: Option<&(Rat, Rat)>,
+    ) -> Slice {
+        let patches = patches(&frame, pawl, obstacles);
+        let mut b = Builder::new(frame, pawl, obstacles);
+        for (i, patch) in patches.iter().enumerate() {
+            b.add(patch, i as u32);
+        }
+        if let Some((lo, hi)) = limits {
+            b.add_limit(lo, 0);
+            b.add_limit(hi, 1);
+        }
+        let mut by_chart = [Vec::new(), Vec::new()];
+        for (i, a) in b.arcs.iter().enumerate() {
+            by_chart[a.chart.index()].push(i as ArcId);
+        }
+        Slice {
+            frame: b.frame,
+            curves: b.curves,
+            arcs: b.arcs,
+            by_chart,
+            patch_of: b.patch_of,
+            patches,
+            crossings: Mutex::default(),
+        }
+    }
+    /// All arcs.
+    pub fn arcs(&self) -> &[Arc] {
+        &self.arcs
+    }
+    /// One arc.
+    pub fn arc(&self, id: ArcId) -> &Arc {
+        &self.arcs[id as usize]
+    }
+    /// One curve.
+    pub fn curve(&self, id: CurveId) -> &Curve {
+        &self.curves[id as usize]
+    }
+    /// The arcs of one chart.
+    pub fn arcs_in(&self, chart: Chart) -> &[ArcId] {
+        &self.by_chart[chart.index()]
+    }
+    /// The patch an arc was cut from; None for a limit stop.
+    pub fn patch(&self, id: ArcId) -> Option<&Patch> {
+        self.patch_of[id as usize].map(|i| &self.patches[i as usize])
+    }
+}
+
+/// A point whose name is known: equal names share one handle.
+#[derive(Debug)]
+struct Named {
+    x: Algebraic,
+    t: std::cell::OnceCell<Time>,
+}
+
+/// The names of points where arcs can end (idea 2: names before numbers).
+#[derive(PartialEq, Eq, Hash)]
+enum Name {
+    /// A pawl vertex on an obstacle vertex, both by their coordinates.
+    VertexVertex(Vec2, Vec2, Chart),
+    /// A pawl edge flush on an obstacle edge, both by their supporting lines.
+    Flush(u32, u32, Chart),
+    /// A vertical tangency of a curve.
+    Tangency(CurveId, Chart),
+}
+
+struct Builder<'a> {
+    frame: Frame,
+    pawl: &'a PawlShape,
+    obstacles: &'a [ObstacleShape],
+    curves: Vec<Curve>,
+    curve_ids: HashMap<[Int; 6], CurveId>,
+    arcs: Vec<Arc>,
+    patch_of: Vec<Option<u32>>,
+    named: HashMap<Name, Rc<[Rc<Named>]>>,
+    pawl_lines: Vec<u32>,
+    obstacle_lines: Vec<u32>,
+    minus_one: Rat,
+    one: Rat,
+    speed2: Rat,
+}
+
+/// Supporting lines (normal, offset) numbered so that collinear edges share a number.
+fn number_lines<'a>(edges: impl Iterator<Item = (&'a Vec2, &'a Vec2)>) -> Vec<u32> {
+    let mut seen: HashMap<Poly, u32> = HashMap::new();
+    edges
+        .map(|(n, on)| {
+            // Offset first, so that primitive() fixes the sign by the normal alone and
+            // orientation stays out of the name.
+            let key = Poly::from_rats(&[n.dot(on), n.x.clone(), n.y.clone(), Rat::one()]);
+            let key = Poly::new(key.coeffs()[..3].to_vec()).primitive();
+            let next = seen.len() as u32;
+            *seen.entry(key).or_insert(next)
+        })
+        .collect()
+}
+
+/// One break point of a patch in a chart.
+struct Break {
+    x: Algebraic,
+    point: Option<Rc<Named>>,
+}
+
+/// Interval versions of a patch's conditions in one chart, to settle samples without big numbers.
+struct Filter {
+    f0: [Interval; 3],
+    f1: [Interval; 3],
+    wedge: [[Interval; 3]; 2],
+    location: [([Interval; 3], [Interval; 3]); 2],
+}
+
+fn enclose(t: &Trig, chart: Chart) -> [Interval; 3] {
+    let f = t.form(chart);
+    [f[0].interval(), f[1].interval(), f[2].interval()]
+}
+
+fn horner(f: &[Interval; 3], x: Interval) -> Interval {
+    (f[2] * x + f[1]) * x + f[0]
+}
+
+impl Filter {
+    fn new(p: &Patch, chart: Chart) -> Filter {
+        Filter {
+            f0: enclose(&p.f0, chart),
+            f1: enclose(&p.f1, chart),
+            wedge: [enclose(&p.wedge[0], chart), enclose(&p.wedge[1], chart)],
+            location: [0, 1].map(|k| {
+                (
+                    enclose(&p.location[k].0, chart),
+                    enclose(&p.location[k].1, chart),
+                )
+            }),
+        }
+    }
+    /// Whether the patch is real on its graph at x, where the intervals can tell.
+    fn valid_graph(&self, x: Interval) -> Option<bool> {
+        let mut sure = true;
+        for w in &self.wedge {
+            match horner(w, x).sign() {
+                Some(s) if s < 0 => return Some(false),
+                Some(s) if s > 0 => {}
+                _ => sure = false,
+            }
+        }
+        let (f0, f1) = (horner(&self.f0, x), horner(&self.f1, x));
+        for (l0, l1) in &self.location {
+            match ((horner(l0, x) * f1 - f0 * horner(l1, x)).sign(), f1.sign()) {
+                (Some(a), Some(b)) if a * b < 0 => return Some(false),
+                (Some(a), Some(b)) if a * b > 0 => {}
+                _ => sure = false,
+            }
+        }
+        sure.then_some(true)
+    }
+}
+
+fn wedge_ok(p: &Patch, chart: Chart, x: &Rat) -> bool {
+    p.wedge.iter().all(|w| w.value(chart, x).sign() >= 0)
+}
+
+/// Whether the patch is real at position x of its graph, exactly.
+fn valid_graph(p: &Patch, chart: Chart, x: &Rat) -> bool {
+    if !wedge_ok(p, chart, x) {
+        return false;
+    }
+    let (f0, f1) = (p.f0.value(chart, x), p.f1.value(chart, x));
+    let s = f1.sign();
+    p.location.iter().all(|(l0, l1)| {
+        let v = l0.value(chart, x) * &f1 - &f0 * l1.value(chart, x);
+        v.sign() * s >= 0
+    })
+}
+
+/// Two quadratics with rational coefficients as integer polynomials, by one common factor.
+fn integral_pair(a: &[Rat; 3], b: &[Rat; 3]) -> (Poly, Poly) {
+    let all: Vec<Rat> = a.iter().chain(b).cloned().chain([Rat::one()]).collect();
+    let p = Poly::from_rats(&all);
+    let c = |r: std::ops::Range<usize>| Poly::new(r.map(|i| p.coeff(i)).collect());
+    (c(0..3), c(3..6))
+}
+
+/// P(u) given in u = tan(θ/2) as a polynomial of a chart's x (multiplied by x² > 0 there).
+fn in_chart(c: &[Int; 3], chart: Chart) -> Poly {
+    match chart {
+        Chart::Rest => Poly::new(c.to_vec()),
+        Chart::Back => Poly::new(vec![c[2].clone(), -&c[1], c[0].clone()]),
+    }
+}
+
+impl<'a> Builder<'a> {
+    fn new(frame: Frame, pawl: &'a PawlShape, obstacles: &'a [ObstacleShape]) -> Builder<'a> {
+        let pawl_lines = number_lines(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
+        let obstacle_lines = number_lines(
+            obstacles
+                .iter()
+                .flat_map(|o| &o.rings)
+                .flat_map(|r| r.normals.iter().zip(&r.vertices)),
+        );
+        let speed2 = frame.v.norm2();
+        Builder {
+            frame,
+            pawl,
+            obstacles,
+            curves: Vec::new(),
+            curve_ids: HashMap::new(),
+            arcs: Vec::new(),
+            patch_of: Vec::new(),
+            named: HashMap::new(),
+            pawl_lines,
+            obstacle_lines,
+            minus_one: Rat::from(-1),
+            one: Rat::one(),
+            speed2,
+        }
+    }
+
+    fn roots(&self, p: &Poly) -> Vec<Algebraic> {
+        if p.is_zero() {
+            Vec::new()
+        } else {
+            p.real_roots_in(&self.minus_one, &self.one)
+        }
+    }
+
+    fn named_roots(&mut self, name: Name, poly: impl FnOnce() -> Poly) -> Rc<[Rc<Named>]> {
+        if let Some(r) = self.named.get(&name) {
+            return r.clone();
+        }
+        let list: Rc<[Rc<Named>]> = self
+            .roots(&poly())
+            .into_iter()
+            .map(|x| {
+                Rc::new(Named {
+                    x,
+                    t: std::cell::OnceCell::new(),
+                })
+            })
+            .collect();
+        self.named.insert(name, list.clone());
+        list
+    }
+
+    /// Where a pawl vertex at a (about the hinge) meets an obstacle vertex at q: R a lies on the
+    /// line through q − p₀ along v. Its time is (q − p₀ − R a)·v/|v|².
+    fn vertex_vertex(&mut self, a: &Vec2, q: &Vec2, chart: Chart) -> Rc<[Rc<Named>]> {
+        if a.is_zero() {
+            return Rc::new([]);
+        }
+        let key = Name::VertexVertex(a.clone(), q.clone(), chart);
+        let w = q - &self.frame.p0;
+        let v = self.frame.v.clone();
+        let list = self.named_roots(key, || {
+            Trig::new(a.cross(&v), -a.dot(&v), -w.cross(&v)).poly(chart)
+        });
+        for n in list.iter() {
+            n.t.get_or_init(|| {
+                let num = Trig::new(-a.dot(&v), -a.cross(&v), w.dot(&v)).form(chart);
+                let den = Trig::constant(self.speed2.clone()).form(chart);
+                let (num, den) = integral_pair(&num, &den);
+                Time::ratio(&n.x, num, den)
+            });
+        }
+        list
+    }
+
+    /// The curve of a patch and the sign by which the C-function differs from it.
+    fn curve_of(&mut self, patch: &Patch) -> Option<(CurveId, i32)> {
+        let p = patch.f0.form(Chart::Rest);
+        let q = patch.f1.form(Chart::Rest);
+        let all: Vec<Rat> = p.into_iter().chain(q).collect();
+        let raw = Poly::from_rats(&all);
+        let top = raw.coeffs().last()?;
+        let flip = top.sign();
+        let prim = raw.primitive();
+        let key: [Int; 6] = std::array::from_fn(|i| prim.coeff(i));
+        if let Some(&id) = self.curve_ids.get(&key) {
+            return Some((id, flip));
+        }
+        let p: [Int; 3] = std::array::from_fn(|i| key[i].clone());
+        let q: [Int; 3] = std::array::from_fn(|i| key[i + 3].clone());
+        let common = has_common_root(patch);
+        let pairs = Chart::BOTH.map(|c| {
+            let (cp, cq) = (in_chart(&p, c), in_chart(&q, c));
+            if cq.is_zero() || !common {
+                return (cp, cq);
+            }
+            if cp.is_zero() {
+                return (cp, Poly::constant(Int::one()));
+            }
+            let g = cp.gcd(&cq);
+            reduce(&cp, &cq, &g)
+        });
+        let [(rp0, rq0), (rp1, rq1)] = pairs;
+        let id = self.curves.len() as CurveId;
+        self.curves.push(Curve {
+            p,
+            q,
+            rp: [rp0, rp1],
+            rq: [rq0, rq1],
+        });
+        self.curve_ids.insert(key, id);
+        Some((id, flip))
+    }
+
+    fn add(&mut self, patch: &Patch, index: u32) {
+        let Some((curve, flip)) = self.curve_of(patch) else {
+            return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
+        };
+        for chart in Chart::BOTH {
+            let c = &self.curves[curve as usize];
+            let (p, q) = (in_chart(&c.p, chart), in_chart(&c.q, chart));
+            let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
+            let before = self.arcs.len();
+            if q.is_zero() {
+                self.add_levels(patch, curve, flip, chart, &p, None);
+            } else {
+                let flat = rp.degree().unwrap_or(0) == 0 && rq.degree() == Some(0);
+                if rq.degree() < q.degree() || rp.degree() < p.degree() {
+                    let g = if p.is_zero() { q.clone() } else { p.gcd(&q) };
+                    self.add_levels(patch, curve, flip, chart, &g, Some((&rp, &rq)));
+                }
+                if flat {
+                    self.add_wall(patch, curve, chart, &rp, &rq);
+                } else {
+                    self.add_graph(patch, curve, flip, chart, (&p, &q), (&rp, &rq));
+                }
+            }
+            // What lies wholly before the phase or wholly after it can never be met.
+            let end = self.frame.duration.interval().hi;
+            let mut i = before;
+            while i < self.arcs.len() {
+                let s = self.arcs[i].t_span;
+                if s.hi < 0.0 || s.lo > end {
+                    self.arcs.swap_remove(i);
+                } else {
+                    i += 1;
+                }
+            }
+            self.patch_of.resize(self.arcs.len(), Some(index));
+        }
+    }
+
+    fn wedge_breaks(&mut self, patch: &Patch, chart: Chart, out: &mut Vec<Break>) {
+        for k in 0..2 {
+            let (pe, oe) = patch.flush[k];
+            let key = Name::Flush(
+                self.pawl_lines[pe as usize],
+                self.obstacle_lines[oe as usize],
+                chart,
+            );
+            for n in self.named_roots(key, || patch.wedge[k].poly(chart)).iter() {
+                out.push(Break {
+                    x: n.x.clone(),
+                    point: Some(n.clone()),
+                });
+            }
+        }
+    }
+
+    fn plain_breaks(&self, p: &Poly, out: &mut Vec<Break>) {
+        for x in self.roots(p) {
+            out.push(Break { x, point: None });
+        }
+    }
+
+    fn seams(&self, out: &mut Vec<Break>) {
+        for r in [&self.minus_one, &self.one] {
+            out.push(Break {
+                x: Algebraic::from(r.clone()),
+                point: None,
+            });
+        }
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn add_graph(
+        &mut self,
+        patch: &Patch,
+        curve: CurveId,
+        flip: i32,
+        chart: Chart,
+        (p, q): (&Poly, &Poly),
+        (rp, rq): (&Poly, &Poly),
+    ) {
+        let mut breaks = Vec::new();
+        // Vertex on vertex first: where several names fall on one point the first is kept.
+        for (a, qv) in &patch.ends {
+            for n in self.vertex_vertex(a, qv, chart).iter() {
+                breaks.push(Break {
+                    x: n.x.clone(),
+                    point: Some(n.clone()),
+                });
+            }
+        }
+        self.wedge_breaks(patch, chart, &mut breaks);
+        // dt/dx = −(P'Q − PQ')/Q².
+        let bend = rp.derivative() * rq - rp * rq.derivative();
+        for n in self
+            .named_roots(Name::Tangency(curve, chart), || bend.clone())
+            .iter()
+        {
+            breaks.push(Break {
+                x: n.x.clone(),
+                point: Some(n.clone()),
+            });
+        }
+        self.plain_breaks(rq, &mut breaks);
+        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
+        if factored {
+            self.plain_breaks(&if p.is_zero() { q.clone() } else { p.gcd(q) }, &mut breaks);
+        }
+        self.seams(&mut breaks);
+        breaks.sort_by(|a, b| a.x.cmp(&b.x));
+        breaks.dedup_by(|b, a| a.x == b.x);
+        let filter = Filter::new(patch, chart);
+        for w in breaks.windows(2) {
+            let s = Algebraic::between(&w[0].x, &w[1].x);
+            let si = s.interval();
+            if !filter
+                .valid_graph(si)
+                .unwrap_or_else(|| valid_graph(patch, chart, &s))
+            {
+                continue;
+            }
+            let bend_sign = bend.sign_at(&s);
+            // The full P'Q − PQ' is that of the reduced pair times the square of the factor.
+            let f1 = q.sign_at(&s) * flip;
+            let up = bend_sign * f1;
+            let end = |b: &Break| {
+                let t = || Time::ratio(&b.x, -rp, rq.clone());
+                // A name may lie on the curve's level instead, at another time.
+                let t = match &b.point {
+                    Some(n) if !factored => n.t.get_or_init(t).clone(),
+                    _ => t(),
+                };
+                End { x: b.x.clone(), t }
+            };
+            self.arcs.push(
+                Arc {
+                    contact: patch.contact,
+                    chart,
+                    curve,
+                    branch: up * flip,
+                    shape: Shape::Graph {
+                        rising: bend_sign < 0,
+                    },
+                    side: if up > 0 { Side::Above } else { Side::Below },
+                    lo: end(&w[0]),
+                    hi: end(&w[1]),
+                    t_span: Interval::all(),
+                    x_span: Interval::all(),
+                }
+                .with_spans(),
+            );
+        }
+    }
+
+    /// Level arcs at the roots of g, where f = g·(rp + t·rq), or f = g alone.
+    fn add_levels(
+        &mut self,
+        patch: &Patch,
+        curve: CurveId,
+        flip: i32,
+        chart: Chart,
+        g: &Poly,
+        rest: Option<(&Poly, &Poly)>,
+    ) {
+        for x in self.roots(g) {
+            // At the seam one copy is enough: the one at x = −1.
+            if x.cmp_rat(&self.one).is_eq()
+                || patch.wedge.iter().any(|w| x.sign_of(&w.poly(chart)) < 0)
+            {
+                continue;
+            }
+            let (mut lo, mut hi) = (None, None);
+            for (k, (l0, l1)) in patch.location.iter().enumerate() {
+                let slope = x.sign_of(&l1.poly(chart));
+                if slope == 0 {
+                    continue;
+                }
+                let (a, qv) = &patch.ends[k];
+                let point = self
+                    .vertex_vertex(a, qv, chart)
+                    .iter()
+                    .find(|n| n.x == x)
+                    .cloned();
+                let end = match point.as_ref().and_then(|n| n.t.get().map(|t| (n, t))) {
+                    Some((n, t)) => End {
+                        x: n.x.clone(),
+                        t: t.clone(),
+                    },
+                    None => {
+                        let (num, den) = integral_pair(&l0.form(chart), &l1.form(chart));
+                        End {
+                            x: x.clone(),
+                            t: Time::ratio(&x, -&num, den),
+                        }
+                    }
+                };
+                if slope > 0 {
+                    lo = Some(end);
+                } else {
+                    hi = Some(end);
+                }
+            }
+            let (Some(lo), Some(hi)) = (lo, hi) else {
+                continue;
+            };
+            if lo.t >= hi.t {
+                continue;
+            }
+            let slope = x.sign_of(&g.derivative());
+            // Where the other factor vanishes f changes sign along the level: cut there.
+            let mut ends = vec![lo];
+            if let Some((rp, rq)) = rest
+                && x.sign_of(rq) != 0
+            {
+                let cut = Time::ratio(&x, -rp, rq.clone());
+                if ends[0].t < cut && cut < hi.t {
+                    ends.push(End {
+                        x: x.clone(),
+                        t: cut,
+                    });
+                }
+            }
+            ends.push(hi);
+            for w in ends.windows(2) {
+                let factor = match rest {
+                    None => 1,
+                    Some((rp, rq)) => {
+                        let s = Time::between(&w[0].t, &w[1].t);
+                        x.sign_of(&(rp.scale(s.denom()) + rq.scale(s.numer())))
+                    }
+                };
+                let branch = slope * factor;
+                let side = match branch * flip {
+                    1 => Side::Above,
+                    -1 => Side::Below,
+                    _ => {
+                        let bend = x.sign_of(&g.derivative().derivative()) * factor * flip;
+                        if bend > 0 { Side::Both } else { Side::Neither }
+                    }
+                };
+                self.arcs.push(
+                    Arc {
+                        contact: patch.contact,
+                        chart,
+                        curve,
+                        branch,
+                        shape: Shape::Level,
+                        side,
+                        lo: w[0].clone(),
+                        hi: w[1].clone(),
+                        t_span: Interval::all(),
+                        x_span: Interval::all(),
+                    }
+                    .with_spans(),
+                );
+            }
+        }
+    }
+
+    /// The contact is at the hinge: it happens at one time, over a range of orientations.
+    fn add_wall(&mut self, patch: &Patch, curve: CurveId, chart: Chart, rp: &Poly, rq: &Poly) {
+        let c = -Rat::new(rp.coeff(0), rq.coeff(0));
+        let at = |(l0, l1): &(Trig, Trig)| l0.add(&l1.scale(&c));
+        let location = [at(&patch.location[0]), at(&patch.location[1])];
+        let (mine, theirs) = self.cones_at_hinge(patch, &c);
+        let mut breaks = Vec::new();
+        self.wedge_breaks(patch, chart, &mut breaks);
+        for l in &location {
+            self.plain_breaks(&l.poly(chart), &mut breaks);
+        }
+        // Where a pawl edge lies along an obstacle edge, or along the motion.
+        for g in mine.generators() {
+            for o in theirs.generators().chain([&self.frame.v]) {
+                let cross = Trig::new(g.cross(o), -g.dot(o), Rat::zero());
+                self.plain_breaks(&cross.poly(chart), &mut breaks);
+            }
+        }
+        self.seams(&mut breaks);
+        breaks.sort_by(|a, b| a.x.cmp(&b.x));
+        breaks.dedup_by(|b, a| a.x == b.x);
+        let t = Time::from(c);
+        for w in breaks.windows(2) {
+            let s = Algebraic::between(&w[0].x, &w[1].x);
+            if !wedge_ok(patch, chart, &s) || location.iter().any(|l| l.value(chart, &s).sign() < 0)
+            {
+                continue;
+            }
+            let turned = mine.map(|g| {
+                let g = g.rotate_tan_half(&s);
+                if chart == Chart::Back { -&g } else { g }
+            });
+            let v = &self.frame.v;
+            let (before, after) = (turned.overlap(&-v, &theirs), turned.overlap(v, &theirs));
+            let side = match (before, after) {
+                (false, true) => Side::Before,
+                (true, false) => Side::After,
+                (false, false) => Side::Both,
+                (true, true) => Side::Neither,
+            };
+            let end = |b: &Break| End {
+                x: b.x.clone(),
+                t: t.clone(),
+            };
+            self.arcs.push(
+                Arc {
+                    contact: patch.contact,
+                    chart,
+                    curve,
+                    branch: 0,
+                    shape: Shape::Wall,
+                    side,
+                    lo: end(&w[0]),
+                    hi: end(&w[1]),
+                    t_span: Interval::all(),
+                    x_span: Interval::all(),
+                }
+                .with_spans(),
+            );
+        }
+    }
+
+    /// The pawl and the obstacle beside the hinge, at θ = 0, when a wall's contact is made at time
+    /// c. Past a corner of the obstacle the hinge may be free on both sides of its edge's line, so
+    /// the C-function's sign alone does not tell.
+    fn cones_at_hinge(&self, patch: &Patch, c: &Rat) -> (Cones, Cones) {
+        let Contact::Obstacle {
+            obstacle,
+            kind,
+            ring,
+            obstacle_feature,
+            pawl_feature,
+        } = patch.contact
+        else {
+            unreachable!("limit stops are no walls")
+        };
+        let body = &self.pawl.ring;
+        let fixed = &self.obstacles[obstacle as usize].rings[ring as usize];
+        let (i, j) = (pawl_feature as usize, obstacle_feature as usize);
+        match kind {
+            ContactKind::B => {
+                let p = &self.frame.p0 + &self.frame.v.scale(c);
+                let at = |k: usize| (fixed.vertices[k] == p).then(|| Cones::at_vertex(fixed, k));
+                let theirs = at(j)
+                    .or_else(|| at(fixed.next(j)))
+                    .unwrap_or_else(|| Cones::at_edge(fixed, j));
+                (Cones::at_vertex(body, i), theirs)
+            }
+            ContactKind::A => {
+                let at = |k: usize| {
+                    body.vertices[k]
+                        .is_zero()
+                        .then(|| Cones::at_vertex(body, k))
+                };
+                let mine = at(i)
+                    .or_else(|| at(body.next(i)))
+                    .unwrap_or_else(|| Cones::at_edge(body, i));
+                (mine, Cones::at_vertex(fixed, j))
+            }
+        }
+    }
+
+    /// An angular stop: a level at u for the whole phase and a little more.
+    fn add_limit(&mut self, u: &Rat, which: u8) {
+        let (chart, x) = if u.abs() <= self.one {
+            (Chart::Rest, u.clone())
+        } else {
+            (Chart::Back, -u.recip())
+        };
+        // At the seam the copy at x = −1 serves.
+        let (chart, x) = if x == self.one {
+            (chart.other(), self.minus_one.clone())
+        } else {
+            (chart, x)
+        };
+        let p = [-u.numer(), u.denom().clone(), Int::zero()];
+        let q = [Int::zero(), Int::zero(), Int::zero()];
+        let curve = self.curves.len() as CurveId;
+        let rp = Chart::BOTH.map(|c| in_chart(&p, c));
+        let rq = [Poly::zero(), Poly::zero()];
+        self.curves.push(Curve { p, q, rp, rq });
+        let x = Algebraic::from(x);
+        let end = |t: Rat| End {
+            x: x.clone(),
+            t: Time::from(t),
+        };
+        self.arcs.push(
+            Arc {
+                contact: Contact::Limit(which),
+                chart,
+                curve,
+                branch: 1,
+                shape: Shape::Level,
+                side: if which == 0 { Side::Above } else { Side::Below },
+                lo: end(self.minus_one.clone()),
+                hi: end(&self.frame.duration + &self.one),
+                t_span: Interval::all(),
+                x_span: Interval::all(),
+            }
+            .with_spans(),
+        );
+        self.patch_of.push(None);
+    }
+}
+
+/// Whether f₀ and f₁ vanish at a common orientation.
+fn has_common_root(patch: &Patch) -> bool {
+    let (f0, f1) = (&patch.f0, &patch.f1);
+    if f1.c.is_zero() && f1.s.is_zero() {
+        // Type B: f₁ is a constant; a common factor only if f₀ is one too.
+        return f0.c.is_zero() && f0.s.is_zero();
+    }
+    // Type A: f₁ vanishes at (cos, sin) = ±(−s₁, c₁)/ρ.
+    let cross = &f0.s * &f1.c - &f0.c * &f1.s;
+    cross.square() == f0.k.square() * (f1.c.square() + f1.s.square())
+}
+
+/// P/g and Q/g by one common factor, so that P/Q is unchanged.
+fn reduce(p: &Poly, q: &Poly, g: &Poly) -> (Poly, Poly) {
+    // g is primitive and divides both over the integers (Gauss), so long division is exact.
+    (quotient(p, g), quotient(q, g))
+}
+
+/// p/g by long division, for a primitive divisor.
+fn quotient(p: &Poly, g: &Poly) -> Poly {
+    let (Some(dp), Some(dg)) = (p.degree(), g.degree()) else {
+        return Poly::zero();
+    };
+    let mut rest = p.coeffs().to_vec();
+    let lead = g.coeff(dg);
+    let mut out = vec![Int::zero(); (dp + 1).saturating_sub(dg)];
+    for k in (0..out.len()).rev() {
+        let c = rest[k + dg].div_exact(&lead);
+        for i in 0..=dg {
+            rest[k + i] -= &(&c * &g.coeff(i));
+        }
+        out[k] = c;
+    }
+    Poly::new(out)
+}

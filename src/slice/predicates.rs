@@ -1,0 +1,440 @@
+//! The questions that the motion asks of the slice. Everything here is decided exactly; the
+//! enclosures that come first only save work.
+
+use super::{Arc, ArcId, CurveId, Shape, Slice, Time};
+use crate::contact::Chart;
+use crate::number::{Algebraic, Int, Interval, Poly, Rat};
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+/// Where two curves cross.
+#[derive(Clone, Debug)]
+pub struct Cross {
+    /// Chart position.
+    pub x: Algebraic,
+    /// When.
+    pub t: Time,
+}
+
+pub(super) type CrossCache = HashMap<(CurveId, CurveId, Chart), std::sync::Arc<[Cross]>>;
+
+/// A point of the cylinder whose time is a rational number or a rational function of its x.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The chart x is meant in.
+    pub chart: Chart,
+    /// Chart position.
+    pub x: Algebraic,
+    /// When.
+    pub t: Time,
+    /// Curves known to pass through it.
+    pub on: Vec<CurveId>,
+}
+
+/// How an arc leaves a point on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Germs {
+    /// Towards earlier times.
+    pub left: bool,
+    /// Towards later times.
+    pub right: bool,
+    /// Straight up (walls).
+    pub up: bool,
+    /// Straight down (walls).
+    pub down: bool,
+}
+
+fn proportional(a: &Poly, b: &Poly) -> Option<(Int, Int)> {
+    let d = a.degree()?;
+    if b.degree() != Some(d) {
+        return None;
+    }
+    let (ca, cb) = (a.coeff(d), b.coeff(d));
+    (0..d)
+        .all(|i| a.coeff(i) * &cb == b.coeff(i) * &ca)
+        .then_some((ca, cb))
+}
+
+impl Slice {
+    /// Where the graph parts of two different curves cross in a chart, ascending in x.
+    ///
+    /// P₁Q₂ − P₂Q₁ is a quartic; where Q₁ and Q₂ are proportional (two type B contacts, or two
+    /// obstacle vertices against one pawl edge) only a quadratic. Computed once a pair.
+    pub fn crossings(&self, a: CurveId, b: CurveId, chart: Chart) -> std::sync::Arc<[Cross]> {
+        let key = (a.min(b), a.max(b), chart);
+        let lock = || self.crossings.lock().unwrap_or_else(|e| e.into_inner());
+        if let Some(c) = lock().get(&key) {
+            return c.clone();
+        }
+        let (p, q) = self.curve(key.0).reduced(chart);
+        let (p2, q2) = self.curve(key.1).reduced(chart);
+        let h = match proportional(q, q2) {
+            Some((c, c2)) => p.scale(&c2) - p2.scale(&c),
+            None => p * q2 - p2 * q,
+        };
+        let list: std::sync::Arc<[Cross]> = if h.is_zero() {
+            std::sync::Arc::new([])
+        } else {
+            h.real_roots_in(&Rat::from(-1), &Rat::one())
+                .into_iter()
+                .filter(|x| x.sign_of(q) != 0)
+                .map(|x| Cross {
+                    t: Time::ratio(&x, -p, q.clone()),
+                    x,
+                })
+                .collect()
+        };
+        lock().insert(key, list.clone());
+        list
+    }
+
+    /// When a graph arc's curve passes position x (where its denominator does not vanish).
+    pub fn time_at(&self, arc: &Arc, x: &Algebraic) -> Time {
+        let (p, q) = self.curve(arc.curve).reduced(arc.chart);
+        Time::ratio(x, -p, q.clone())
+    }
+
+    /// The position of an arc at a rational time within its span. None off its span, and on walls.
+    pub fn height_at(&self, arc: &Arc, t: &Rat) -> Option<Algebraic> {
+        match arc.shape {
+            Shape::Wall => None,
+            Shape::Level => Some(arc.lo.x.clone()),
+            Shape::Graph { .. } => {
+                let (p, q) = self.curve(arc.curve).reduced(arc.chart);
+                let f = p.scale(t.denom()) + q.scale(t.numer());
+                f.real_roots_in(&Rat::from(-1), &Rat::one())
+                    .into_iter()
+                    .find(|x| arc.spans_x(x))
+            }
+        }
+    }
+
+    /// Whether the closed arc holds the point.
+    pub fn holds(&self, arc: &Arc, z: &Point) -> bool {
+        if arc.chart != z.chart
+            || !arc.t_span.meets(&z.t.interval())
+            || !arc.x_span.meets(&z.x.interval())
+        {
+            return false;
+        }
+        match arc.shape {
+            Shape::Level => arc.lo.x == z.x && arc.lo.t <= z.t && z.t <= arc.hi.t,
+            Shape::Wall => arc.lo.t == z.t && arc.spans_x(&z.x),
+            Shape::Graph { .. } => {
+                arc.spans_x(&z.x) && (z.on.contains(&arc.curve) || self.passes(arc, z))
+            }
+        }
+    }
+
+    fn passes(&self, arc: &Arc, z: &Point) -> bool {
+        let (p, q) = self.curve(arc.curve).reduced(arc.chart);
+        let (num, den) = z.t.parts();
+        z.x.sign_of(&(p * den + q * num)) == 0
+    }
+
+    /// How an arc leaves a point that it holds.
+    pub fn germs(&self, arc: &Arc, z: &Point) -> Germs {
+        match arc.shape {
+            Shape::Wall => Germs {
+                left: false,
+                right: false,
+                up: z.x < arc.hi.x,
+                down: arc.lo.x < z.x,
+            },
+            Shape::Level => Germs {
+                left: arc.lo.t < z.t,
+                right: z.t < arc.hi.t,
+                up: false,
+                down: false,
+            },
+            Shape::Graph { rising } => {
+                let (below, above) = (arc.lo.x < z.x, z.x < arc.hi.x);
+                let (left, right) = if rising {
+                    (below, above)
+                } else {
+                    (above, below)
+                };
+                Germs {
+                    left,
+                    right,
+                    up: false,
+                    down: false,
+                }
+            }
+        }
+    }
+
+    /// dx/dt of a graph arc at a point on it, as an enclosure.
+    fn slope(&self, arc: &Arc, z: &Point) -> Interval {
+        if arc.shape == Shape::Level {
+            return Interval::point(0.0);
+        }
+        let (p, q) = self.curve(arc.curve).reduced(arc.chart);
+        let (x, t) = (z.x.interval(), z.t.interval());
+        let fx = p.derivative().eval_interval(x) + t * q.derivative().eval_interval(x);
+        -q.eval_interval(x) / fx
+    }
+
+    /// Which of two arcs through z (in one chart, neither a wall) is higher just after z.
+    /// `Equal` means that they coincide there.
+    pub fn cmp_after(&self, a: ArcId, b: ArcId, z: &Point) -> Ordering {
+        self.cmp_beside(a, b, z, true)
+    }
+
+    /// Which of two arcs through z is higher just before z.
+    pub fn cmp_before(&self, a: ArcId, b: ArcId, z: &Point) -> Ordering {
+        self.cmp_beside(a, b, z, false)
+    }
+
+    fn cmp_beside(&self, ia: ArcId, ib: ArcId, z: &Point, after: bool) -> Ordering {
+        let (a, b) = (self.arc(ia), self.arc(ib));
+        if ia == ib {
+            return Ordering::Equal;
+        }
+        let against_level = |arc: &Arc| cmp_horizontal(arc, after);
+        match (a.shape, b.shape) {
+            (_, Shape::Level) => return against_level(a),
+            (Shape::Level, _) => return against_level(b).reverse(),
+            _ => {}
+        }
+        if a.curve == b.curve {
+            // Coincident, or the two branches that meet in a tangency.
+            return if a.branch == b.branch {
+                Ordering::Equal
+            } else {
+                a.lo.x.cmp(&b.lo.x)
+            };
+        }
+        let (sa, sb) = (self.slope(a, z), self.slope(b, z));
+        let by_slope = if sa.below(&sb) {
+            Some(Ordering::Less)
+        } else if sb.below(&sa) {
+            Some(Ordering::Greater)
+        } else {
+            None
+        };
+        if let Some(o) = by_slope {
+            return if after { o } else { o.reverse() };
+        }
+        let t = if after {
+            let mut next = a.end().t.clone().min(b.end().t.clone());
+            for c in self.shared_crossings(a, b) {
+                if c.t > z.t && c.t < next {
+                    next = c.t;
+                }
+            }
+            Time::between(&z.t, &next)
+        } else {
+            let mut last = a.start().t.clone().max(b.start().t.clone());
+            for c in self.shared_crossings(a, b) {
+                if c.t < z.t && c.t > last {
+                    last = c.t;
+                }
+            }
+            Time::between(&last, &z.t)
+        };
+        self.cmp_heights(a, b, &t)
+    }
+
+    /// Crossings of two graph arcs' curves that lie on both arcs.
+    fn shared_crossings(&self, a: &Arc, b: &Arc) -> Vec<Cross> {
+        self.crossings(a.curve, b.curve, a.chart)
+            .iter()
+            .filter(|c| a.spans_x(&c.x) && b.spans_x(&c.x))
+            .cloned()
+            .collect()
+    }
+
+    fn cmp_heights(&self, a: &Arc, b: &Arc, t: &Rat) -> Ordering {
+        match (self.height_at(a, t), self.height_at(b, t)) {
+            (Some(x), Some(y)) => x.cmp(&y),
+            _ => {
+                debug_assert!(false, "both arcs span the time");
+                Ordering::Equal
+            }
+        }
+    }
+
+    /// Whether an arc exists just after t (walls never do).
+    pub fn alive_after(&self, arc: &Arc, t: &Time) -> bool {
+        !matches!(arc.shape, Shape::Wall)
+            && arc.t_span.hi >= t.interval().lo
+            && arc.t_span.lo <= t.interval().hi
+            && arc.start().t <= *t
+            && *t < arc.end().t
+    }
+
+    /// The position of an arc just after t against a constant x; `Equal` only for a level there.
+    pub fn cmp_after_const(&self, arc: &Arc, t: &Time, x: &Algebraic) -> Ordering {
+        let xi = x.interval();
+        if xi.below(&arc.x_span) {
+            return Ordering::Greater;
+        }
+        if arc.x_span.below(&xi) {
+            return Ordering::Less;
+        }
+        match arc.shape {
+            Shape::Graph { rising } => {
+                if *x <= arc.lo.x {
+                    Ordering::Greater
+                } else if *x >= arc.hi.x {
+                    Ordering::Less
+                } else {
+                    let passed = *t >= self.time_at(arc, x);
+                    if passed == rising {
+                        Ordering::Greater
+                    } else {
+                        Ordering::Less
+                    }
+                }
+            }
+            _ => arc.lo.x.cmp(x),
+        }
+    }
+
+    /// Which of two arcs of one chart, both alive just after t, is higher there.
+    pub fn cmp_heights_after(&self, ia: ArcId, ib: ArcId, t: &Time) -> Ordering {
+        let (a, b) = (self.arc(ia), self.arc(ib));
+        if a.x_span.below(&b.x_span) {
+            return Ordering::Less;
+        }
+        if b.x_span.below(&a.x_span) {
+            return Ordering::Greater;
+        }
+        match (a.shape, b.shape) {
+            (_, Shape::Level) => return self.cmp_after_const(a, t, &b.lo.x),
+            (Shape::Level, _) => return self.cmp_after_const(b, t, &a.lo.x).reverse(),
+            _ => {}
+        }
+        if a.curve == b.curve {
+            return if a.branch == b.branch {
+                Ordering::Equal
+            } else {
+                a.lo.x.cmp(&b.lo.x)
+            };
+        }
+        let mut next = a.end().t.clone().min(b.end().t.clone());
+        for c in self.shared_crossings(a, b) {
+            if c.t > *t && c.t < next {
+                next = c.t;
+            }
+        }
+        self.cmp_heights(a, b, &Time::between(t, &next))
+    }
+
+    /// Whether two arcs coincide wherever both exist: one curve and branch, or levels at one x.
+    pub fn coincide(&self, ia: ArcId, ib: ArcId) -> bool {
+        let (a, b) = (self.arc(ia), self.arc(ib));
+        if a.chart != b.chart {
+            return false;
+        }
+        match (a.shape, b.shape) {
+            (Shape::Level, Shape::Level) => a.lo.x == b.lo.x,
+            (Shape::Graph { .. }, Shape::Graph { .. }) => {
+                a.curve == b.curve && a.branch == b.branch
+            }
+            _ => false,
+        }
+    }
+
+    /// The earliest point after `from` and not after `until` at which the arc `ia` meets the arc
+    /// `ib` anew, ends or begins to coincide with it. `None` if there is none.
+    pub fn first_meeting(&self, ia: ArcId, ib: ArcId, from: &Time, until: &Time) -> Option<Point> {
+        let (a, b) = (self.arc(ia), self.arc(ib));
+        if !a.t_span.meets(&b.t_span)
+            || !a.x_span.meets(&b.x_span)
+            || b.t_span.hi < from.interval().lo
+            || b.t_span.lo > until.interval().hi
+        {
+            return None;
+        }
+        let later = |t: &Time| *t > *from && *t <= *until;
+        let point = |x: &Algebraic, t: Time, on: Vec<CurveId>| Point {
+            chart: a.chart,
+            x: x.clone(),
+            t,
+            on,
+        };
+        if self.coincide(ia, ib) {
+            // Ends in order of time, each with its own handles.
+            return [b.start(), b.end()]
+                .into_iter()
+                .find(|e| later(&e.t))
+                .filter(|e| a.start().t <= e.t && e.t <= a.end().t)
+                .map(|e| point(&e.x, e.t.clone(), vec![b.curve]));
+        }
+        match (a.shape, b.shape) {
+            (Shape::Graph { .. }, Shape::Graph { .. }) => {
+                if a.curve == b.curve {
+                    return None; // they can only meet in a's own end
+                }
+                let mut best: Option<Point> = None;
+                for c in self.crossings(a.curve, b.curve, a.chart).iter() {
+                    let i = c.t.interval();
+                    if i.hi < from.interval().lo || i.lo > until.interval().hi {
+                        continue;
+                    }
+                    if a.spans_x(&c.x)
+                        && b.spans_x(&c.x)
+                        && later(&c.t)
+                        && best.as_ref().is_none_or(|p| c.t < p.t)
+                    {
+                        best = Some(point(&c.x, c.t.clone(), vec![a.curve, b.curve]));
+                    }
+                }
+                best
+            }
+            (Shape::Graph { .. }, Shape::Level) => {
+                let x = &b.lo.x;
+                if !a.spans_x(x) {
+                    return None;
+                }
+                let t = self.time_at(a, x);
+                (later(&t) && b.lo.t <= t && t <= b.hi.t).then(|| point(x, t, vec![a.curve]))
+            }
+            (Shape::Level, Shape::Graph { .. }) => {
+                let x = &a.lo.x;
+                if !b.spans_x(x) {
+                    return None;
+                }
+                let t = self.time_at(b, x);
+                (later(&t) && t <= a.hi.t).then(|| point(x, t, vec![b.curve]))
+            }
+            (Shape::Graph { .. }, Shape::Wall) => {
+                let c = b.wall_time()?;
+                let t = b.lo.t.clone();
+                if !later(&t) || a.start().t > t || t > a.end().t {
+                    return None;
+                }
+                let x = self.height_at(a, c)?;
+                b.spans_x(&x).then(|| point(&x, t, vec![a.curve]))
+            }
+            (Shape::Level, Shape::Wall) => {
+                let t = b.lo.t.clone();
+                (later(&t) && t <= a.hi.t && b.spans_x(&a.lo.x))
+                    .then(|| point(&a.lo.x, t, Vec::new()))
+            }
+            (Shape::Level, Shape::Level) | (Shape::Wall, _) => None,
+        }
+    }
+}
+
+/// Which side of the horizontal through a point on it an arc lies on just after (or before).
+pub fn cmp_horizontal(arc: &Arc, after: bool) -> Ordering {
+    match arc.shape {
+        Shape::Graph { rising } if rising == after => Ordering::Greater,
+        Shape::Graph { .. } => Ordering::Less,
+        _ => Ordering::Equal,
+    }
+}
+
+impl Arc {
+    /// Whether x lies between its ends, ends included.
+    pub fn spans_x(&self, x: &Algebraic) -> bool {
+        let i = x.interval();
+        if i.below(&self.x_span) || self.x_span.below(&i) {
+            return false;
+        }
+        self.lo.x <= *x && *x <= self.hi.x
+    }
+}
