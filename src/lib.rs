@@ -16,6 +16,8 @@
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`lp`]: exact linear programming, with certificates.
+//! * [`certificate`]: the checker of certificates, which shares no code with what made them.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -43,9 +45,11 @@
 //! # }
 //! ```
 
+pub mod certificate;
 pub mod contact;
 pub mod face;
 pub mod geometry;
+pub mod lp;
 pub mod motion;
 pub mod number;
 pub mod report;

@@ -27,6 +27,10 @@ pub(crate) enum Verb {
     Check(Check),
     /// Draw the mechanism at its events, and its angles over time
     Render(Render),
+    /// Solve a linear program exactly: status, objective and certificate
+    Lp(snapfit::lp::cli::LpArgs),
+    /// Check a linear program's certificate with code of its own
+    Verify(snapfit::lp::cli::VerifyArgs),
     /// Print the JSON Schema of a file format
     Schema(Schema),
 }

@@ -56,6 +56,8 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Simulate(args) => run_simulate(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
+        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
