@@ -43,6 +43,7 @@
 //! # }
 //! ```
 
+pub mod analysis;
 pub mod contact;
 pub mod geometry;
 pub mod motion;
