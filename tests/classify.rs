@@ -34,3 +34,19 @@ fn figures() {
         println!("   forward crit {:?}", r.critical_forward.map(|c| c.nearest_f64()));
     }
 }
+
+#[test]
+fn debug_dump() {
+    use snapfit::analysis::{escape::*, stretch::stretches};
+    let p = std::env::var("FIGS").unwrap() + "/fig7E.toml";
+    let s = scene(&std::fs::read_to_string(p).unwrap());
+    let r = relative(&s, &ASK).unwrap();
+    let g = Ground::new(&s, None);
+    let run = &r.directions[0].run;
+    for e in &run.pawls[0].events { println!("EV {:?} t={} x={:?} h={} to={:?} {:?}", e.kind, e.time.interval().lo, e.angle.x.nearest_f64(), e.angle.half_turn, e.to.as_ref().map(|a| a.x.nearest_f64()), e.contacts); }
+    for s in &run.pawls[0].segments { println!("SEG {} {} {:?}", s.from.interval().lo, s.to.interval().lo, s.sliding.as_ref().map(|x| (x.contact, x.branch))); }
+    for st in stretches(&s, &g.shapes, &g.obstacles, run) {
+        println!("ST t {} {} x {:?} {:?} h {} side {} {:?}", st.t[0].interval().lo, st.t[1].interval().lo, st.x[0].nearest_f64(), st.x[1].nearest_f64(), st.half_turn, st.side, st.contact);
+        println!("   {:?}", snapfit::analysis::peak::force(&st, s.pawls[0].stiffness.as_ref().unwrap(), s.friction.as_ref().unwrap(), 30).peak);
+    }
+}
