@@ -48,5 +48,6 @@ pub mod contact;
 pub mod geometry;
 pub mod motion;
 pub mod number;
+pub mod report;
 pub mod scene;
 pub mod slice;

@@ -1,0 +1,141 @@
+//! The arguments, as clap reads them.
+
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Predicts, exactly, the motion of planar mechanisms that click
+#[derive(Parser)]
+#[command(version, about, max_term_width = 100, after_help = "\
+Exit status: 0 decided (a jam is a result), 2 bad usage or bad input, 3 undecided within the limits\n\
+given, 1 a bug.")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Verb {
+    /// Simulate a scene: its events, contacts and outcome
+    Simulate(Simulate),
+    /// Validate a scene and say what would be modelled
+    Check(Check),
+    /// Draw the mechanism at its events, and its angles over time
+    Render(Render),
+    /// Print the JSON Schema of a file format
+    Schema(Schema),
+}
+
+/// The verbs that there are.
+pub(crate) fn verbs() -> Vec<String> {
+    let command = Cli::command();
+    command.get_subcommands().map(|c| c.get_name().to_owned()).collect()
+}
+
+#[derive(Args)]
+pub(crate) struct Simulate {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
+}
+
+#[derive(Args)]
+pub(crate) struct Check {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
+}
+
+#[derive(Args)]
+pub(crate) struct Render {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// Draw as SVG, to PATH or to standard output
+    #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "-")]
+    pub(crate) svg: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Schema {
+    /// Which format
+    #[arg(value_enum)]
+    pub(crate) name: Name,
+    /// Write to a file instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct Common {
+    /// A scene, TOML or JSON; - is standard input
+    pub(crate) file: PathBuf,
+    /// Change a value of the scene before it is read, e.g. pawl.left.stiffness=3/2 (repeatable)
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Write to a file instead of standard output
+    #[arg(long, short, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// No warnings and no progress
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args)]
+pub(crate) struct Engine {
+    /// Which numbers decide
+    #[arg(long, value_enum, default_value = "exact")]
+    pub(crate) arithmetic: Arithmetic,
+    /// Which algorithm runs
+    #[arg(long, value_enum, default_value = "naive")]
+    pub(crate) method: Method,
+    /// Give up, undecided, after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) time_limit: Option<Duration>,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.parse().map_err(|_| "expected a number of seconds".to_owned())?;
+    Duration::try_from_secs_f64(seconds).map_err(|e| e.to_string())
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Arithmetic {
+    /// Algebraic numbers throughout
+    Exact,
+    /// Doubles first, exact where they cannot tell (not built yet)
+    Filtered,
+    /// Doubles with a tolerance (not built yet)
+    F64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// Every step looks at every arc
+    Naive,
+    /// A sweep over the free component (not built yet)
+    Sweep,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For programs
+    Json,
+    /// For people
+    Summary,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Name {
+    /// The scene file
+    Scene,
+    /// The result of `simulate`
+    Result,
+}

@@ -1,0 +1,257 @@
+//! The command line of snapfit: verbs over scene files.
+//!
+//! Standard output carries the result, standard error everything else. The exit status says what
+//! became of the question: 0 decided, 2 bad usage or bad input, 3 undecided within the limits
+//! given, 1 a bug.
+
+mod args;
+mod output;
+mod progress;
+
+use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render, Simulate, Verb};
+use clap::Parser;
+use clap::error::ErrorKind;
+use snapfit::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use snapfit::report::json::{Provenance, ResultDocument, result_schema};
+use snapfit::report::{picture, pretty, summary};
+use snapfit::scene::{self, Diagnostic, Rendering, SceneFile};
+use std::io::{IsTerminal, Read, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+const DECIDED: u8 = 0;
+const BUG: u8 = 1;
+const BAD: u8 = 2;
+const UNDECIDED: u8 = 3;
+
+/// Why a verb gives no answer. All of it is the user's to mend, and ends in [`BAD`].
+enum Failure {
+    /// In words.
+    Message(String),
+    /// With places in a file.
+    Scene(Vec<Diagnostic>),
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Failure {
+        Failure::Message(message)
+    }
+}
+
+fn main() -> ExitCode {
+    report_panics();
+    let status = std::panic::catch_unwind(|| match Cli::try_parse() {
+        Ok(cli) => run(&cli.verb).unwrap_or_else(|failure| {
+            complain(&failure);
+            BAD
+        }),
+        Err(error) => usage(&error),
+    });
+    ExitCode::from(status.unwrap_or(BUG))
+}
+
+fn run(verb: &Verb) -> Result<u8, Failure> {
+    match verb {
+        Verb::Simulate(args) => run_simulate(args),
+        Verb::Check(args) => run_check(args),
+        Verb::Render(args) => run_render(args),
+        Verb::Schema(args) => {
+            let schema = match args.name {
+                Name::Scene => scene::scene_schema(),
+                Name::Result => result_schema(),
+            };
+            let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
+            output::write(args.out.as_deref(), &(pretty(&compact, 100) + "\n"))?;
+            Ok(DECIDED)
+        }
+    }
+}
+
+fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
+    let file = read(&args.common)?;
+    let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
+    let text = match format_of(args.format, &args.common) {
+        Format::Json => document.to_text().map_err(|e| e.to_string())?,
+        Format::Summary => summary::summary(&document, style()),
+    };
+    output::write(args.common.out.as_deref(), &text)?;
+    Ok(status(&trajectory))
+}
+
+fn run_check(args: &Check) -> Result<u8, Failure> {
+    let file = read(&args.common)?;
+    let report = scene::check(&file);
+    let text = match format_of(args.format, &args.common) {
+        Format::Json => pretty(&serde_json::to_string(&report).map_err(|e| e.to_string())?, 100) + "\n",
+        Format::Summary => report.to_string(),
+    };
+    output::write(args.common.out.as_deref(), &text)?;
+    Ok(DECIDED)
+}
+
+fn run_render(args: &Render) -> Result<u8, Failure> {
+    let to = match (&args.svg, &args.common.out) {
+        (Some(path), None) => Some(path.as_path()),
+        (Some(path), Some(out)) if path == Path::new("-") => Some(out.as_path()),
+        (Some(_), Some(_)) => {
+            return Err("give the picture's path once: to --svg or to --out".to_owned().into());
+        }
+        (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
+    };
+    output::spare_input(&args.common.file, to)?;
+    let file = read(&args.common)?;
+    let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
+    output::write(to, &picture::svg(file.scene(), &document))?;
+    Ok(status(&trajectory))
+}
+
+/// Reads the scene that is asked for; `-` is standard input.
+fn read(common: &Common) -> Result<SceneFile, Failure> {
+    output::spare_input(&common.file, common.out.as_deref())?;
+    let mut bytes = Vec::new();
+    let (name, done) = if common.file == Path::new("-") {
+        ("<stdin>".to_owned(), std::io::stdin().lock().read_to_end(&mut bytes).map(|_| ()))
+    } else {
+        let name = common.file.display().to_string();
+        (name, std::fs::read(&common.file).map(|b| bytes = b))
+    };
+    done.map_err(|e| format!("{name}: {e}"))?;
+    let mut overrides = Vec::new();
+    for set in &common.set {
+        match set.split_once('=') {
+            Some((path, value)) => overrides.push((path.trim(), value.trim())),
+            None => return Err(format!("--set {set}: expected NAME=VALUE").into()),
+        }
+    }
+    let file = scene::read_scene_bytes(&name, &bytes, &overrides).map_err(Failure::Scene)?;
+    Ok(file)
+}
+
+fn simulated(
+    file: &SceneFile,
+    common: &Common,
+    engine: &Engine,
+) -> Result<(Trajectory, ResultDocument), Failure> {
+    let how = provenance(engine)?;
+    if !common.quiet {
+        for warning in file.warnings() {
+            let _ = writeln!(std::io::stderr(), "{warning}");
+        }
+    }
+    let show = !common.quiet && std::io::stderr().is_terminal();
+    let spinner = show.then(progress::Spinner::start);
+    let tell = |p| {
+        if let Some(spinner) = &spinner {
+            spinner.tell(p);
+        }
+    };
+    let options = Options {
+        deadline: engine.time_limit.and_then(|limit| Instant::now().checked_add(limit)),
+        progress: Some(&tell),
+    };
+    let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
+    let document = ResultDocument::new(file.scene(), &trajectory, how);
+    Ok((trajectory, document))
+}
+
+/// A plan that the engine found impossible, placed in the file.
+fn misplanned(file: &SceneFile, error: &PlanError) -> Failure {
+    let (PlanError::NeverCollides { phase } | PlanError::Impossible { phase }) = error;
+    let place = format!("motion.{phase}.until");
+    Failure::Scene(vec![file.error_at(&place, "endless-motion").message(error.to_string())])
+}
+
+fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
+    let unbuilt = |option: &str, asked: &str, built: &str| {
+        Failure::Message(format!("--{option} {asked} is not built yet; there is: {built}"))
+    };
+    match engine.arithmetic {
+        Arithmetic::Exact => {}
+        Arithmetic::Filtered => return Err(unbuilt("arithmetic", "filtered", "exact")),
+        Arithmetic::F64 => return Err(unbuilt("arithmetic", "f64", "exact")),
+    }
+    match engine.method {
+        Method::Naive => {}
+        Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
+    }
+    Ok(Provenance {
+        arithmetic: "exact",
+        method: "naive",
+    })
+}
+
+fn status(trajectory: &Trajectory) -> u8 {
+    match trajectory.outcome.kind {
+        OutcomeKind::Undecided => UNDECIDED,
+        _ => DECIDED,
+    }
+}
+
+fn format_of(asked: Option<Format>, common: &Common) -> Format {
+    let watched = common.out.is_none() && std::io::stdout().is_terminal();
+    asked.unwrap_or(if watched { Format::Summary } else { Format::Json })
+}
+
+/// Colours only on a terminal, and not where the user wants none (NO_COLOR).
+fn colour_on(terminal: bool) -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|t| t == "dumb");
+    terminal && !set("NO_COLOR") && !dumb
+}
+
+fn style() -> summary::Style {
+    if colour_on(std::io::stdout().is_terminal()) {
+        summary::Style::Ansi
+    } else {
+        summary::Style::Plain
+    }
+}
+
+fn complain(failure: &Failure) {
+    let mut stderr = std::io::stderr().lock();
+    // Where even standard error is closed there is nobody to tell.
+    let _ = match failure {
+        Failure::Message(message) => writeln!(stderr, "snapfit: {message}"),
+        Failure::Scene(diagnostics) => {
+            let rendering = match std::io::stderr().is_terminal() {
+                false => Rendering::Plain,
+                true if colour_on(true) => Rendering::Colour,
+                true => Rendering::Unicode,
+            };
+            let all: String = diagnostics.iter().map(|d| d.render(rendering)).collect();
+            stderr.write_all(all.as_bytes())
+        }
+    };
+}
+
+/// What clap makes of the arguments: help, the version, or an error.
+fn usage(error: &clap::Error) -> u8 {
+    let _ = error.print();
+    if error.kind() == ErrorKind::InvalidSubcommand {
+        let _ = writeln!(std::io::stderr(), "\nThere is: {}", args::verbs().join(", "));
+    }
+    if error.use_stderr() { BAD } else { DECIDED }
+}
+
+/// A panic is a bug: one line that asks for a report, and the long form for those who ask for it.
+fn report_panics() {
+    let wanted = std::env::var_os("RUST_BACKTRACE").is_some_and(|v| v != "0");
+    let long = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let payload = info.payload();
+        let what = payload.downcast_ref::<&str>().copied();
+        let what = what.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+        let what = what.unwrap_or("unknown").replace('\n', " ");
+        let place = info.location().map_or_else(String::new, |l| format!(" at {l}"));
+        let _ = writeln!(
+            std::io::stderr(),
+            "snapfit {}: internal error{place}: {what}. This is a bug: please report it together \
+             with the scene that shows it",
+            env!("CARGO_PKG_VERSION")
+        );
+        if wanted {
+            long(info);
+        }
+    }));
+}

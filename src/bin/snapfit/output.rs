@@ -1,0 +1,76 @@
+//! Writing results: to standard output, or to a file that is whole or as it was.
+
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Writes a result to a file, or to standard output (None or `-`).
+pub(crate) fn write(to: Option<&Path>, text: &str) -> Result<(), String> {
+    let Some(path) = to.filter(|p| *p != Path::new("-")) else {
+        let mut out = io::stdout().lock();
+        return match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+            // A reader that has seen enough is no failure.
+            Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("standard output: {e}")),
+            _ => Ok(()),
+        };
+    };
+    replace(path, text).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Refuses an output path that is the input file.
+pub(crate) fn spare_input(input: &Path, out: Option<&Path>) -> Result<(), String> {
+    let same = |a: &Path, b: &Path| match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    };
+    match out {
+        Some(out) if same(input, out) => Err(format!(
+            "{}: this is the input; it would be lost",
+            out.display()
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Writes beside the file, then renames over it.
+fn replace(path: &Path, text: &str) -> io::Result<()> {
+    // Through a symbolic link, so that the link stays one.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let old = fs::metadata(&target).ok();
+    if old.as_ref().is_some_and(|m| !m.is_file()) {
+        // A device or a pipe has no content to lose; a directory refuses by itself.
+        return match fs::OpenOptions::new().write(true).open(&target)?.write_all(text.as_bytes()) {
+            Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
+            other => other,
+        };
+    }
+    let (beside, mut file) = create_beside(&target)?;
+    let written = (|| {
+        file.write_all(text.as_bytes())?;
+        if let Some(old) = old {
+            file.set_permissions(old.permissions())?;
+        }
+        file.sync_all()?;
+        fs::rename(&beside, &target)
+    })();
+    if written.is_err() {
+        let _ = fs::remove_file(&beside);
+    }
+    written
+}
+
+fn create_beside(target: &Path) -> io::Result<(PathBuf, fs::File)> {
+    let name = target.file_name().ok_or(ErrorKind::InvalidInput)?;
+    let mut attempt = 0;
+    loop {
+        let mut beside = std::ffi::OsString::from(".");
+        beside.push(name);
+        beside.push(format!(".{}-{attempt}.part", std::process::id()));
+        let beside = target.with_file_name(beside);
+        match fs::OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Ok(file) => return Ok((beside, file)),
+            Err(e) if e.kind() == ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
+            Err(e) => return Err(e),
+        }
+    }
+}

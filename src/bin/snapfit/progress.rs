@@ -1,0 +1,63 @@
+//! A spinner on standard error for work that takes a while.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use snapfit::motion::plan::Progress;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// How long work may take before anything is shown.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Shows what the engine is at, from half a second on; gone when dropped.
+pub(crate) struct Spinner {
+    news: Option<Sender<String>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Spinner {
+    pub(crate) fn start() -> Spinner {
+        let (news, inbox) = channel::<String>();
+        let thread = std::thread::spawn(move || {
+            let begin = std::time::Instant::now();
+            let mut message = String::from("reading");
+            loop {
+                match inbox.recv_timeout(PATIENCE.saturating_sub(begin.elapsed())) {
+                    Ok(text) => message = text,
+                    Err(RecvTimeoutError::Timeout) => break,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
+            }
+            let bar = ProgressBar::new_spinner();
+            if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+                bar.set_style(style);
+            }
+            bar.enable_steady_tick(Duration::from_millis(100));
+            bar.set_message(message);
+            for text in inbox {
+                bar.set_message(text);
+            }
+            bar.finish_and_clear();
+        });
+        Spinner {
+            news: Some(news),
+            thread: Some(thread),
+        }
+    }
+
+    pub(crate) fn tell(&self, p: Progress) {
+        if let Some(news) = &self.news {
+            let (phase, pawl) = (p.phase, p.pawl);
+            let _ = news.send(format!("phase {phase} of {}, pawl {pawl}: {} arcs", p.phases, p.arcs));
+        }
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        self.news.take();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,383 @@
+//! The mechanism at its events: one panel an instant, all at one scale (DP Fig. 4).
+//!
+//! What matters is where the pawls are. If they stay near, every panel shows the same window of
+//! the plane and the mechanism moves through it; if they travel far, the window travels along.
+
+use super::fit;
+use super::plot::nice_step;
+use super::stage::Stage;
+use super::svg::{CONTACT, INK, MUTED, Point, RULE, Svg, clipped};
+use crate::report::json::{EventDocument, ResultDocument};
+use crate::report::words::digits;
+
+/// Most panels that are drawn.
+const MOST: usize = 16;
+const GAP: f64 = 16.0;
+const CAPTION: f64 = 46.0;
+
+/// Colours of the pawls: told apart by most eyes (Okabe and Ito).
+const PAWLS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9"];
+
+/// The colour of a pawl.
+pub(super) fn colour(pawl: usize) -> &'static str {
+    PAWLS[pawl % PAWLS.len()]
+}
+
+/// An instant worth a panel.
+pub(super) struct Moment {
+    pub(super) letter: String,
+    pub(super) phase: usize,
+    pub(super) t: f64,
+    /// For each pawl θ, and θ after a snap.
+    poses: Vec<(f64, Option<f64>)>,
+    /// Contact points: those that begin or hold, and those left behind by a snap.
+    touching: Vec<Point>,
+    left: Vec<Point>,
+    captions: Vec<String>,
+}
+
+/// How much an event deserves a panel.
+fn weight(kind: &str) -> u32 {
+    match kind {
+        "jam-incompatible" | "jam-single" | "stick" | "bifurcation" | "root-collision" => 7,
+        "snap-free" | "snap-free-vertex" => 6,
+        "translational-collision" | "snap-landing" => 5,
+        "sliding-collision" | "release" | "limit-stop" => 4,
+        "plan-end" => 3,
+        "phase-end" => 2,
+        _ => 0,
+    }
+}
+
+/// The instants to draw, in order, lettered.
+pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
+    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> = vec![(0, 0.0, 5, vec![])];
+    let mut all: Vec<(usize, &EventDocument)> = Vec::new();
+    for (i, pawl) in result.pawls.iter().enumerate() {
+        all.extend(pawl.events.iter().map(|e| (i, e)));
+    }
+    all.sort_by(|a, b| {
+        let key = |e: &EventDocument| (e.phase, e.time.approx());
+        let (ka, kb) = (key(a.1), key(b.1));
+        ka.0.cmp(&kb.0).then(ka.1.total_cmp(&kb.1))
+    });
+    for (pawl, event) in all {
+        let (phase, t) = (event.phase, event.time.approx());
+        if !t.is_finite() {
+            continue;
+        }
+        match groups.last_mut() {
+            Some(g) if g.0 == phase && g.1 == t => {
+                g.2 = g.2.max(weight(event.kind));
+                g.3.push((pawl, event));
+            }
+            _ => groups.push((phase, t, weight(event.kind), vec![(pawl, event)])),
+        }
+    }
+    let mut ranked: Vec<usize> = (0..groups.len()).filter(|&i| groups[i].2 > 0).collect();
+    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].2), i));
+    ranked.truncate(MOST);
+    ranked.sort_unstable();
+    let chosen = ranked.into_iter().enumerate();
+    chosen
+        .map(|(k, i)| {
+            let (phase, t, _, events) = &groups[i];
+            moment(stage, result, letter(k), (*phase, *t), events)
+        })
+        .collect()
+}
+
+fn letter(k: usize) -> String {
+    char::from(b'a' + (k % 26) as u8).to_string()
+}
+
+fn moment(
+    stage: &Stage,
+    result: &ResultDocument,
+    letter: String,
+    (phase, t): (usize, f64),
+    events: &[(usize, &EventDocument)],
+) -> Moment {
+    let offset = stage.offset(phase, t);
+    let mut poses = Vec::new();
+    for pawl in 0..stage.pawls.len() {
+        let mine = || events.iter().filter(|e| e.0 == pawl).map(|e| e.1);
+        let before = mine().next().map_or_else(|| stage.theta(pawl, phase, t), |e| e.theta);
+        let snap = mine().find(|e| e.to_theta.is_some());
+        poses.push((snap.map_or(before, |e| e.theta), snap.and_then(|e| e.to_theta)));
+    }
+    let (mut touching, mut left) = (Vec::new(), Vec::new());
+    for (pawl, e) in events {
+        let lost = e.to_theta.is_some() || e.kind == "release";
+        for c in &e.contacts {
+            if let Some(p) = stage.contact_point(c, *pawl, offset, e.theta) {
+                if lost { left.push(p) } else { touching.push(p) }
+            }
+        }
+    }
+    Moment {
+        letter,
+        phase,
+        t,
+        poses,
+        touching,
+        left,
+        captions: captions(result, events),
+    }
+}
+
+/// One line a set of kinds: which pawls, what happened.
+fn captions(result: &ResultDocument, events: &[(usize, &EventDocument)]) -> Vec<String> {
+    if events.is_empty() {
+        return vec!["start".to_owned()];
+    }
+    let mut lines: Vec<(Vec<&str>, String)> = Vec::new();
+    for (i, pawl) in result.pawls.iter().enumerate() {
+        let mut kinds: Vec<&str> = Vec::new();
+        let mine = events.iter().filter(|e| e.0 == i);
+        for e in mine.filter(|e| e.1.kind != "graze") {
+            if !kinds.contains(&e.1.kind) {
+                kinds.push(e.1.kind);
+            }
+        }
+        if kinds.contains(&"plan-end") {
+            kinds.retain(|k| *k != "phase-end");
+        }
+        if kinds.is_empty() {
+            continue;
+        }
+        let text = kinds.join(", ");
+        match lines.iter_mut().find(|l| l.1 == text) {
+            Some(l) => l.0.push(&pawl.name),
+            None => lines.push((vec![&pawl.name], text)),
+        }
+    }
+    let alone = result.pawls.len() == 1;
+    let words = lines.iter().map(|(names, text)| {
+        if alone || names.len() == result.pawls.len() {
+            text.clone()
+        } else {
+            format!("{}: {text}", names.join(", "))
+        }
+    });
+    words.collect()
+}
+
+/// A rectangle of the plane: [x0, y0, x1, y1].
+type Window = [f64; 4];
+
+fn around(points: impl IntoIterator<Item = Point>) -> Window {
+    let none = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+    points.into_iter().fold(none, |w, [x, y]| {
+        [w[0].min(x), w[1].min(y), w[2].max(x), w[3].max(y)]
+    })
+}
+
+fn size(w: &Window) -> [f64; 2] {
+    [w[2] - w[0], w[3] - w[1]]
+}
+
+/// The window of each moment: all of one size.
+fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
+    let outline = |m: &Moment, offset: Point| -> Vec<Point> {
+        let poses = m.poses.iter().enumerate();
+        poses
+            .flat_map(|(i, (before, after))| {
+                let mut points = stage.pawl_at(i, offset, *before);
+                points.extend(after.iter().flat_map(|a| stage.pawl_at(i, offset, *a)));
+                // The hinge may lie outside of the polygon.
+                let hinge = stage.pawls[i].hinge;
+                points.push([hinge[0] + offset[0], hinge[1] + offset[1]]);
+                points
+            })
+            .collect()
+    };
+    let offsets: Vec<Point> = moments.iter().map(|m| stage.offset(m.phase, m.t)).collect();
+    let mut near = around(moments.iter().flat_map(|m| outline(m, [0.0, 0.0])));
+    // As much of the root as does not dwarf the pawls.
+    let [w, h] = size(&near);
+    let reach = 0.3 * w.max(h);
+    if let Some(root) = &stage.root {
+        let frame = [near[0] - reach, near[1] - reach, near[2] + reach, near[3] + reach];
+        let part = around(clipped(root, frame));
+        if part[0] <= part[2] {
+            near = [near[0].min(part[0]), near[1].min(part[1]), near[2].max(part[2]), near[3].max(part[3])];
+        }
+    }
+    let paths = around(offsets.iter().copied());
+    let [dx, dy] = size(&paths);
+    let [w, h] = size(&near);
+    let stays = dx <= 1.2 * w.max(0.5 * h) && dy <= 1.2 * h.max(0.5 * w);
+    offsets
+        .iter()
+        .map(|o| {
+            let base = if stays {
+                [near[0] + paths[0], near[1] + paths[1], near[2] + paths[2], near[3] + paths[3]]
+            } else {
+                [near[0] + o[0], near[1] + o[1], near[2] + o[0], near[3] + o[1]]
+            };
+            framed(base)
+        })
+        .collect()
+}
+
+/// With a margin, and neither a needle nor a ribbon.
+fn framed(w: Window) -> Window {
+    let [mut dx, mut dy] = size(&w);
+    let c = [(w[0] + w[2]) / 2.0, (w[1] + w[3]) / 2.0];
+    let margin = 0.16 * dx.max(dy).max(1e-300);
+    dx += margin;
+    dy += margin;
+    dx = dx.max(0.62 * dy);
+    dy = dy.max(dx / 1.7);
+    [c[0] - dx / 2.0, c[1] - dy / 2.0, c[0] + dx / 2.0, c[1] + dy / 2.0]
+}
+
+/// Draws the panels into [x, y, width]; returns the y below them.
+pub(super) fn draw(page: &mut Svg, stage: &Stage, moments: &[Moment], [x, y, width]: [f64; 3]) -> f64 {
+    let windows = windows(stage, moments);
+    let Some(first) = windows.first() else { return y };
+    let [dx, dy] = size(first);
+    if !(dx.is_finite() && dy.is_finite()) {
+        page.text(x, y + 14.0, 12.0, MUTED, "start", false, "The scene is too large to be drawn.");
+        return y + 20.0;
+    }
+    let (columns, w) = columns(moments.len(), dx / dy, width);
+    let h = w * dy / dx;
+    let scale = w / dx;
+    for (i, (m, window)) in moments.iter().zip(&windows).enumerate() {
+        let px = x + (i % columns) as f64 * (w + GAP);
+        let py = y + (i / columns) as f64 * (h + CAPTION);
+        panel(page, stage, m, window, [px, py, w, h]);
+    }
+    let rows = moments.len().div_ceil(columns);
+    let below = y + rows as f64 * (h + CAPTION);
+    legend(page, stage, scale, [x, below + 6.0, dx]);
+    below + 22.0
+}
+
+/// How many columns, and how wide: about as high as a page would have it.
+fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
+    let wide = |columns: usize| {
+        let w = (width - (columns - 1) as f64 * GAP) / columns as f64;
+        (columns, w.min(330.0).min(330.0 * aspect.max(0.75)))
+    };
+    let height = |c: usize| {
+        let rows = count.div_ceil(c) as f64;
+        rows * (wide(c).1 / aspect + CAPTION)
+    };
+    let fits = (3..=6).min_by(|a, b| {
+        let off = |c: usize| (height(c) - 0.62 * width).abs();
+        off(*a).total_cmp(&off(*b))
+    });
+    wide(fits.unwrap_or(4).max(3))
+}
+
+fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64; 4]) {
+    let [px, py, w, h] = rect;
+    let scale = w / (window[2] - window[0]);
+    let put = |p: Point| [px + (p[0] - window[0]) * scale, py + (window[3] - p[1]) * scale];
+    let slack = 0.2 * size(window)[0].max(size(window)[1]);
+    let beyond = [window[0] - slack, window[1] - slack, window[2] + slack, window[3] + slack];
+    let placed = |ring: &[Point]| -> Vec<Point> {
+        clipped(ring, beyond).into_iter().map(put).collect()
+    };
+    page.rect(rect, "#fbfcfd", "none");
+    page.clip(rect);
+    for (_, rings) in &stage.obstacles {
+        let rings: Vec<Vec<Point>> = rings.iter().map(|r| placed(r)).collect();
+        page.shape(&rings, "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"");
+    }
+    let offset = stage.offset(m.phase, m.t);
+    if let Some(root) = stage.root_at(offset) {
+        let style = "fill=\"#eadfc4\" fill-opacity=\"0.8\" stroke=\"#8d7b4a\" stroke-width=\"1\"";
+        page.shape(&[placed(&root)], style);
+    }
+    for (i, (before, after)) in m.poses.iter().enumerate() {
+        let c = colour(i);
+        let now = placed(&stage.pawl_at(i, offset, after.unwrap_or(*before)));
+        let style = format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
+        page.shape(&[now], &style);
+        if after.is_some() {
+            let ghost = placed(&stage.pawl_at(i, offset, *before));
+            let style = format!("fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\"");
+            page.shape(&[ghost], &style);
+        }
+    }
+    for (i, pawl) in stage.pawls.iter().enumerate() {
+        let hinge = put([pawl.hinge[0] + offset[0], pawl.hinge[1] + offset[1]]);
+        page.circle(hinge, 3.6, "#ffffff", colour(i), 1.4);
+        page.circle(hinge, 1.2, colour(i), "none", 0.0);
+    }
+    for p in &m.left {
+        page.circle(put(*p), 3.4, "#ffffff", CONTACT, 1.4);
+    }
+    for p in &m.touching {
+        page.circle(put(*p), 3.4, CONTACT, "#ffffff", 0.8);
+    }
+    page.end();
+    page.rect(rect, "none", RULE);
+    travel(page, stage, m.phase, [px, py]);
+    let head = format!("({}) t = {}", m.letter, digits(m.t, 6));
+    page.text(px, py + h + 15.0, 12.0, INK, "start", true, &head);
+    let (shown, rest) = m.captions.split_at(m.captions.len().min(2));
+    for (k, line) in shown.iter().enumerate() {
+        let more = if k == 1 && !rest.is_empty() { ", …" } else { "" };
+        let line = fit(&(line.clone() + more), 10.5, w);
+        page.text(px, py + h + 28.0 + 12.0 * k as f64, 10.5, MUTED, "start", false, &line);
+    }
+}
+
+/// The direction in which the root moves, in a corner of its own.
+fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
+    let [vx, vy] = stage.phases[phase].velocity;
+    let l = vx.hypot(vy);
+    if !(l.is_finite() && l > 0.0) {
+        return;
+    }
+    let half = [9.0 * vx / l, -9.0 * vy / l];
+    let c = [px + 15.0, py + 15.0];
+    page.circle(c, 11.5, "#ffffff", RULE, 0.8);
+    page.arrow([c[0] - half[0], c[1] - half[1]], [c[0] + half[0], c[1] + half[1]], INK);
+}
+
+/// What the signs in the panels mean, and a scale.
+fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
+    let mut at = x;
+    let unit = nice_step(dx / 4.0);
+    let bar = unit * scale;
+    page.line([at, y], [at + bar, y], INK, 1.4, "");
+    for end in [at, at + bar] {
+        page.line([end, y - 3.0], [end, y + 3.0], INK, 1.4, "");
+    }
+    at += bar + 6.0;
+    let word = |page: &mut Svg, at: &mut f64, text: &str| {
+        page.text(*at, y + 3.8, 11.0, MUTED, "start", false, text);
+        *at += super::text_width(text, 11.0) + 20.0;
+    };
+    let units = if unit == 1.0 { "1 unit".to_owned() } else { format!("{} units", digits(unit, 3)) };
+    word(page, &mut at, &units);
+    page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
+    at += 12.0;
+    word(page, &mut at, "contact");
+    page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
+    at += 12.0;
+    word(page, &mut at, "contact lost");
+    page.circle([at + 4.0, y], 3.6, "#ffffff", colour(0), 1.4);
+    page.circle([at + 4.0, y], 1.2, colour(0), "none", 0.0);
+    at += 12.0;
+    word(page, &mut at, "hinge");
+    page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
+    at += 26.0;
+    word(page, &mut at, "before a snap");
+    page.arrow([at, y], [at + 18.0, y], INK);
+    at += 24.0;
+    word(page, &mut at, "motion of the root");
+    if stage.pawls.len() > 1 {
+        for (i, pawl) in stage.pawls.iter().enumerate().take(6) {
+            page.rect([at, y - 4.5, 12.0, 9.0], colour(i), "none");
+            at += 17.0;
+            word(page, &mut at, &fit(&pawl.name, 11.0, 90.0));
+        }
+    }
+}
