@@ -7,10 +7,16 @@
 //! rounded arithmetic of [`fix`]. Kinematic and friction verdicts are exact; what holds an
 //! arctangent is enclosed, and decided only when the enclosure decides.
 
+mod cells;
 pub mod classify;
 pub mod critical;
+pub mod document;
 pub mod escape;
 pub mod fix;
 pub mod peak;
 mod qpoly;
 pub mod stretch;
+pub mod total;
+
+pub use classify::{Ask, Verdict};
+pub use document::{ClassifyDocument, ForcesDocument, classify, forces};

@@ -37,6 +37,24 @@ impl QPoly {
         }
         QPoly(out)
     }
+    /// The quotient by a divisor.
+    pub(super) fn over(&self, d: &Poly) -> QPoly {
+        let (Some(m), Some(lead)) = (d.degree(), d.leading()) else {
+            return self.clone();
+        };
+        let lead = Rat::from(lead.clone());
+        let mut rest = self.0.clone();
+        let mut out = vec![Rat::zero(); (rest.len()).saturating_sub(m)];
+        for k in (0..out.len()).rev() {
+            let c = &rest[k + m] / &lead;
+            for (i, y) in d.coeffs().iter().enumerate() {
+                let less = &c * &Rat::from(y.clone());
+                rest[k + i] -= &less;
+            }
+            out[k] = c;
+        }
+        QPoly(out)
+    }
     pub(super) fn derivative(&self) -> QPoly {
         let by = |(i, c): (usize, &Rat)| c * &Rat::from(i as i64);
         QPoly(self.0.iter().enumerate().skip(1).map(by).collect())

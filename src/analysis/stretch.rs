@@ -278,16 +278,18 @@ impl World<'_> {
         }
     }
 
-    fn reduced(&self, chart: Chart) -> (Poly, Poly) {
+    /// P and Q without their common factor, their quotient unchanged.
+    fn reduced(&self, chart: Chart) -> (QPoly, QPoly) {
         let (p, q) = (Curve::in_chart(self.p, chart), Curve::in_chart(self.q, chart));
+        let (whole_p, whole_q) = (QPoly::of(&p), QPoly::of(&q));
         if q.is_zero() || p.is_zero() {
-            return (p, q);
+            return (whole_p, whole_q);
         }
         let g = p.gcd(&q);
-        match (p.div_exact(&g), q.div_exact(&g)) {
-            (Some(p), Some(q)) => (p, q),
-            _ => (p, q),
+        if g.degree() == Some(0) {
+            return (whole_p, whole_q);
         }
+        (whole_p.over(&g), whole_q.over(&g))
     }
 
     fn time_at(&self, chart: Chart, x: &Rat) -> Option<Time> {
@@ -322,7 +324,7 @@ impl World<'_> {
                     rise: form(&rise),
                     den: one,
                     drag: form(&Trig::new(a.dot(v), a.cross(v), Rat::zero())),
-                    clock: (QPoly::of(&p), QPoly::of(&q)),
+                    clock: (p, q),
                     epsilon: 1,
                     normal2: n.norm2(),
                 }
@@ -350,8 +352,8 @@ impl World<'_> {
                 let f1 = Trig::new(-m.dot(v), -m.cross(v), Rat::zero()).derivative();
                 let (p, q) = self.reduced(chart);
                 let at = Algebraic::between(x0, x1);
-                let sign = Rat::from(i64::from(q.sign_at(&at)));
-                let (p, q) = (QPoly::of(&p).scale(&sign), QPoly::of(&q).scale(&sign));
+                let sign = Rat::from(i64::from(q.eval(&at).sign()));
+                let (p, q) = (p.scale(&sign), q.scale(&sign));
                 let den = q.mul(&one);
                 Law::Graph {
                     turn: form(&f0).mul(&q).sub(&p.mul(&form(&f1))),

@@ -20,6 +20,10 @@ pub(crate) enum Verb {
     Simulate(Simulate),
     /// Validate a scene and say what would be modelled
     Check(Check),
+    /// Say what locks it, and how firmly: the motion-diode class
+    Classify(Classify),
+    /// Enclose the contact forces and torques, and their peaks
+    Forces(Forces),
     /// Draw the mechanism at its events, and its angles over time
     Render(Render),
     /// Print the JSON Schema of a file format
@@ -41,6 +45,29 @@ pub(crate) struct Simulate {
     /// What to print [default: summary on a terminal, else json]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
+}
+
+#[derive(Args)]
+pub(crate) struct Classify {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// Exit with status 4 unless the class is this one: none, force, friction or kinematic; with
+    /// total- before it, unless it is total too
+    #[arg(long, value_name = "CLASS")]
+    pub(crate) expect: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct Forces {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// Significant digits of every enclosure
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) digits: u32,
 }
 
 #[derive(Args)]
