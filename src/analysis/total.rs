@@ -131,7 +131,7 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         .iter()
         .filter(|a| escape.is_none() && a.verdict < class)
         .map(Arc::width)
-        .sum();
+        .fold(0.0, |a, b| a + b);
     Total {
         class,
         cover: search.cover,

@@ -8,7 +8,7 @@ use std::time::Duration;
 #[derive(Parser)]
 #[command(version, about, max_term_width = 100, after_help = "\
 Exit status: 0 decided (a jam is a result), 2 bad usage or bad input, 3 undecided within the limits\n\
-given, 1 a bug.")]
+given, 4 decided but not as --expect says, 1 a bug.")]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,
