@@ -293,11 +293,16 @@ impl Part {
             let x = b.hull(&l, &r);
             let falls = self.slope(&t, &x).sign();
             if falls.is_some() {
-                // Monotone: the ends are boxes already, or ends of neighbouring cells.
-                for (end, p) in [(&l, b.rat(&l)), (&r, b.rat(&r))] {
-                    let v = self.value(&t, &p)?;
+                // Monotone: highest at an end.
+                for end in [&l, &r] {
+                    let v = self.value(&t, &b.rat(end))?;
                     if v.lo() > lo {
-                        (lo, at) = (v.lo(), Spot::Inside(end.clone(), end.clone()));
+                        lo = v.lo();
+                        at = match () {
+                            () if *end == boxes[0].1 => Spot::End(0),
+                            () if *end == boxes[1].0 => Spot::End(1),
+                            () => Spot::Inside(l.clone(), r.clone()),
+                        };
                     }
                     hi = hi.max(v.hi());
                 }
