@@ -21,12 +21,15 @@ const WIDTH: usize = 110;
 #[schemars(title = "snapfit result")]
 pub struct ResultDocument {
     /// `snapfit.result/1`.
+    #[schemars(extend("enum" = ["snapfit.result/1"]))]
     pub schema: &'static str,
     /// Name of the scene.
     pub scene: String,
     /// Which arithmetic decided: `exact`, `filtered` or `f64`.
+    #[schemars(extend("enum" = ["exact", "filtered", "f64"]))]
     pub arithmetic: &'static str,
     /// Which algorithm ran: `naive` or `sweep`.
+    #[schemars(extend("enum" = ["naive", "sweep"]))]
     pub method: &'static str,
     /// The phases that ran.
     pub phases: Vec<PhaseDocument>,
@@ -53,6 +56,7 @@ pub struct PhaseDocument {
 #[schemars(rename = "Outcome")]
 pub struct OutcomeDocument {
     /// `completed`, `jammed`, `stuck`, `root-collision`, `bifurcated` or `undecided`.
+    #[schemars(extend("enum" = ["completed", "jammed", "stuck", "root-collision", "bifurcated", "undecided"]))]
     pub kind: &'static str,
     /// When.
     pub time: Num,
@@ -72,6 +76,7 @@ pub struct OutcomeDocument {
 #[schemars(rename = "Branch")]
 pub struct BranchDocument {
     /// `counter-clockwise` or `clockwise`.
+    #[schemars(extend("enum" = ["counter-clockwise", "clockwise"]))]
     pub direction: &'static str,
     /// What would drive the pawl that way.
     pub contacts: Vec<ContactDocument>,
@@ -114,6 +119,7 @@ pub enum Infinity {
 #[schemars(rename = "Event")]
 pub struct EventDocument {
     /// What.
+    #[schemars(extend("enum" = ["release", "graze", "translational-collision", "sliding-collision", "snap-free", "snap-free-vertex", "snap-landing", "limit-stop", "stick", "jam-incompatible", "jam-single", "bifurcation", "root-collision", "phase-end", "plan-end"]))]
     pub kind: &'static str,
     /// When.
     pub time: Num,
@@ -222,6 +228,7 @@ pub enum RootContactDocument {
 #[schemars(rename = "Segment")]
 pub struct SegmentDocument {
     /// `free` (θ = 0) or `sliding`.
+    #[schemars(extend("enum" = ["free", "sliding"]))]
     pub kind: &'static str,
     /// In which phase.
     pub phase: usize,
@@ -238,6 +245,7 @@ pub struct SegmentDocument {
     /// The curve that u = tan(θ/2) is on; null where it is free.
     pub curve: Option<CurveDocument>,
     /// The sign in u = (−B ± √(B² − 4AC))/(2A); where A = 0, `+` if B > 0 and `-` if B < 0; null where it is free.
+    #[schemars(extend("enum" = ["+", "-", null]))]
     pub branch: Option<&'static str>,
 }
 
@@ -308,7 +316,9 @@ impl ResultDocument {
 /// The JSON Schema of a result (draft 2020-12), as `snapfit schema result` prints it.
 pub fn result_schema() -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize();
-    let mut schema = settings.into_generator().into_root_schema_for::<ResultDocument>();
+    let mut schema = settings
+        .into_generator()
+        .into_root_schema_for::<ResultDocument>();
     schema.insert("$id".to_owned(), "snapfit.result/1".into());
     schema
 }
@@ -353,8 +363,14 @@ impl Writer<'_> {
     fn event(&mut self, event: &motion::Event) -> EventDocument {
         let at = self.numbers.orientation(&event.angle);
         let to = event.to.as_ref().map(|a| self.numbers.orientation(a));
-        let pawl = event.contacts.iter().map(|c| EventContact::Pawl(self.contact(c)));
-        let root = event.root_contacts.iter().map(|c| EventContact::Root(self.root_contact(c)));
+        let pawl = event
+            .contacts
+            .iter()
+            .map(|c| EventContact::Pawl(self.contact(c)));
+        let root = event
+            .root_contacts
+            .iter()
+            .map(|c| EventContact::Root(self.root_contact(c)));
         EventDocument {
             kind: event.kind.name(),
             contacts: pawl.chain(root).collect(),
@@ -382,7 +398,13 @@ impl Writer<'_> {
                 s.also.iter().map(|c| self.contact(c)).collect()
             }),
             curve: sliding.map(curve),
-            branch: sliding.map(|s| if s.branch < 0 && !on_stop(s) { "-" } else { "+" }),
+            branch: sliding.map(|s| {
+                if s.branch < 0 && !on_stop(s) {
+                    "-"
+                } else {
+                    "+"
+                }
+            }),
         }
     }
 

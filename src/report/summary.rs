@@ -31,13 +31,21 @@ pub fn summary(result: &ResultDocument, style: Style) -> String {
     }
     for branch in result.outcome.branches.iter().flatten() {
         let on: Vec<String> = branch.contacts.iter().map(super::words::contact).collect();
-        let holds = if branch.sticks { ", where friction holds it" } else { "" };
-        let on = if on.is_empty() { String::new() } else { format!(" on {}", on.join(", ")) };
+        let holds = if branch.sticks {
+            ", where friction holds it"
+        } else {
+            ""
+        };
+        let on = if on.is_empty() {
+            String::new()
+        } else {
+            format!(", driven by {}", on.join(", "))
+        };
         let _ = writeln!(out, "  {}{on}{holds}", branch.direction);
     }
     for pawl in &result.pawls {
         out.push('\n');
-        out.push_str(&style.paint("1", &format!("pawl {}", pawl.name)));
+        out.push_str(&style.paint("1", &format!("pawl “{}”", pawl.name)));
         out.push('\n');
         out.push_str(&table(&pawl.events, style));
     }
@@ -58,7 +66,11 @@ fn table(events: &[EventDocument], style: Style) -> String {
         let mut text = String::from("  ");
         for (c, cell) in cells.iter().enumerate() {
             let gap = " ".repeat(widths[c] - cell.chars().count());
-            let (before, after) = if RIGHT[c] { (gap.as_str(), "") } else { ("", gap.as_str()) };
+            let (before, after) = if RIGHT[c] {
+                (gap.as_str(), "")
+            } else {
+                ("", gap.as_str())
+            };
             let _ = write!(text, "{before}{cell}{after}  ");
         }
         text.trim_end().to_owned()
@@ -92,7 +104,9 @@ fn row(e: &EventDocument) -> [String; 6] {
 
 fn colour(kind: &str) -> Option<&'static str> {
     match kind {
-        "jam-incompatible" | "jam-single" | "stick" | "root-collision" | "bifurcation" => Some("31"),
+        "jam-incompatible" | "jam-single" | "stick" | "root-collision" | "bifurcation" => {
+            Some("31")
+        }
         "snap-free" | "snap-free-vertex" => Some("33"),
         "phase-end" | "plan-end" | "graze" => Some("2"),
         _ => None,

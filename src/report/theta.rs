@@ -98,7 +98,9 @@ mod tests {
     fn pi_is_enclosed() {
         // floor(π·2^124), from the decimal digits of π.
         let (lo, hi) = enclosure(1, &Algebraic::from(Rat::zero()), 124);
-        let pi: Int = "66814286504060421741230023322616923956".parse().expect("digits");
+        let pi: Int = "66814286504060421741230023322616923956"
+            .parse()
+            .expect("digits");
         assert!(lo <= pi && pi <= hi, "{lo} {hi}");
         assert!((hi - lo).bits() < 14);
     }
@@ -130,7 +132,13 @@ mod tests {
         // tan(π/8) = √2 − 1 is a root of x² + 2x − 1; θ = π/4.
         let roots = Poly::new(vec![-Int::one(), Int::from(2), Int::one()]).real_roots();
         assert_eq!(theta(0, &roots[1]), std::f64::consts::FRAC_PI_4);
-        assert_eq!(theta(0, &Algebraic::from(Rat::one())), std::f64::consts::FRAC_PI_2);
-        assert_eq!(theta(1, &Algebraic::from(Rat::zero())), std::f64::consts::PI);
+        assert_eq!(
+            theta(0, &Algebraic::from(Rat::one())),
+            std::f64::consts::FRAC_PI_2
+        );
+        assert_eq!(
+            theta(1, &Algebraic::from(Rat::zero())),
+            std::f64::consts::PI
+        );
     }
 }

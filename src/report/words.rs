@@ -9,7 +9,11 @@ use super::num::{Exact, Num};
 /// A double to so many significant digits, without trailing zeros.
 pub(super) fn digits(x: f64, significant: usize) -> String {
     if x == 0.0 || !x.is_finite() {
-        return if x == 0.0 { "0".to_owned() } else { minus(&x.to_string()) };
+        return if x == 0.0 {
+            "0".to_owned()
+        } else {
+            minus(&x.to_string())
+        };
     }
     let scientific = format!("{x:.*e}", significant.saturating_sub(1));
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
@@ -45,8 +49,16 @@ pub(super) fn degrees(theta: f64) -> String {
 /// A number in a sentence: exactly if that is short, else to six digits.
 pub(super) fn short(n: &Num) -> String {
     match &n.exact {
-        Exact::Rational { rational } if rational.len() <= 7 => minus(rational),
+        Some(Exact::Rational { rational }) if rational.len() <= 7 => minus(rational),
         _ => format!("≈{}", approx(n)),
+    }
+}
+
+/// `= 7/2`, or `≈ 1.41421`.
+fn equals(n: &Num) -> String {
+    match short(n).strip_prefix('≈') {
+        Some(rounded) => format!("≈ {rounded}"),
+        None => format!("= {}", short(n)),
     }
 }
 
@@ -61,14 +73,14 @@ pub(super) fn approx(n: &Num) -> String {
 /// What a number exactly is, in a few columns.
 pub(super) fn exactly(n: &Num) -> String {
     match &n.exact {
-        Exact::Rational { rational } if rational.chars().count() <= 15 => minus(rational),
-        Exact::Rational { rational } => {
+        None => String::new(),
+        Some(Exact::Rational { rational }) if rational.len() <= 15 => minus(rational),
+        Some(Exact::Rational { rational }) => {
             let digits = rational.bytes().filter(u8::is_ascii_digit).count();
             format!("rational, {digits} digits")
         }
-        Exact::Root { polynomial, .. } => {
-            polynomial_text(polynomial).unwrap_or_else(|| format!("degree {}", polynomial.len() - 1))
-        }
+        Some(Exact::Root { polynomial, .. }) => polynomial_text(polynomial)
+            .unwrap_or_else(|| format!("degree {}", polynomial.len() - 1)),
     }
 }
 
@@ -105,13 +117,19 @@ pub(super) fn contact(c: &ContactDocument) -> String {
             obstacle,
             obstacle_edge,
             hole,
-        } => format!("vertex {pawl_vertex} on {obstacle}{} edge {obstacle_edge}", within(*hole)),
+        } => format!(
+            "vertex {pawl_vertex} on {obstacle}{} edge {obstacle_edge}",
+            within(*hole)
+        ),
         ContactDocument::A {
             pawl_edge,
             obstacle,
             obstacle_vertex,
             hole,
-        } => format!("edge {pawl_edge} on {obstacle}{} vertex {obstacle_vertex}", within(*hole)),
+        } => format!(
+            "edge {pawl_edge} on {obstacle}{} vertex {obstacle_vertex}",
+            within(*hole)
+        ),
         ContactDocument::Limit { limit: 0 } => "lower stop".to_owned(),
         ContactDocument::Limit { .. } => "upper stop".to_owned(),
     }
@@ -130,13 +148,19 @@ pub(super) fn any_contact(c: &EventContact) -> String {
             obstacle,
             obstacle_edge,
             hole,
-        }) => format!("root vertex {root_vertex} on {obstacle}{} edge {obstacle_edge}", within(*hole)),
+        }) => format!(
+            "root vertex {root_vertex} on {obstacle}{} edge {obstacle_edge}",
+            within(*hole)
+        ),
         EventContact::Root(RootContactDocument::A {
             root_edge,
             obstacle,
             obstacle_vertex,
             hole,
-        }) => format!("root edge {root_edge} on {obstacle}{} vertex {obstacle_vertex}", within(*hole)),
+        }) => format!(
+            "root edge {root_edge} on {obstacle}{} vertex {obstacle_vertex}",
+            within(*hole)
+        ),
     }
 }
 
@@ -158,7 +182,13 @@ pub(super) fn last_cause(result: &ResultDocument) -> Option<&EventDocument> {
     result
         .pawls
         .iter()
-        .filter(|p| result.outcome.pawl.as_ref().is_none_or(|name| *name == p.name))
+        .filter(|p| {
+            result
+                .outcome
+                .pawl
+                .as_ref()
+                .is_none_or(|name| *name == p.name)
+        })
         .filter_map(|p| p.events.iter().rev().find(|e| causes.contains(&e.kind)))
         .next()
 }
@@ -175,9 +205,9 @@ pub(super) fn headline(result: &ResultDocument) -> String {
         _ => "is undecided: a limit was reached",
     };
     format!(
-        "{} {verb} at t = {}{}, the root displaced by {}",
+        "{} {verb} at t {}{}, the root displaced by {}",
         result.scene,
-        short(&o.time),
+        equals(&o.time),
         in_phase(result, o),
         place(o)
     )
@@ -199,7 +229,7 @@ fn place(o: &OutcomeDocument) -> String {
 pub(super) fn reason(result: &ResultDocument) -> Option<String> {
     let o = &result.outcome;
     let cause = last_cause(result)?;
-    let who = o.pawl.as_deref().unwrap_or_default();
+    let who = format!("“{}”", o.pawl.as_deref().unwrap_or_default());
     let what = contacts(&cause.contacts);
     let theta = degrees(cause.theta);
     Some(match (o.kind, cause.kind) {
@@ -234,7 +264,8 @@ mod tests {
 
     #[test]
     fn polynomials_spelled_out() {
-        let poly = |c: &[&str]| polynomial_text(&c.iter().map(|s| s.to_string()).collect::<Vec<_>>());
+        let poly =
+            |c: &[&str]| polynomial_text(&c.iter().map(|s| s.to_string()).collect::<Vec<_>>());
         assert_eq!(poly(&["-2", "0", "1"]).as_deref(), Some("t²−2=0"));
         assert_eq!(poly(&["1", "-1", "3"]).as_deref(), Some("3t²−t+1=0"));
         assert_eq!(poly(&["1", "0", "0", "0", "0", "1"]), None);

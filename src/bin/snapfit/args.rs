@@ -6,9 +6,14 @@ use std::time::Duration;
 
 /// Predicts, exactly, the motion of planar mechanisms that click
 #[derive(Parser)]
-#[command(version, about, max_term_width = 100, after_help = "\
+#[command(
+    version,
+    about,
+    max_term_width = 100,
+    after_help = "\
 Exit status: 0 decided (a jam is a result), 2 bad usage or bad input, 3 undecided within the limits\n\
-given, 4 decided but not as --expect says, 1 a bug.")]
+given, 4 decided but not as --expect says, 1 a bug."
+)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub(crate) verb: Verb,
@@ -33,7 +38,10 @@ pub(crate) enum Verb {
 /// The verbs that there are.
 pub(crate) fn verbs() -> Vec<String> {
     let command = Cli::command();
-    command.get_subcommands().map(|c| c.get_name().to_owned()).collect()
+    command
+        .get_subcommands()
+        .map(|c| c.get_name().to_owned())
+        .collect()
 }
 
 #[derive(Args)]
@@ -129,7 +137,9 @@ pub(crate) struct Engine {
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds: f64 = text.parse().map_err(|_| "expected a number of seconds".to_owned())?;
+    let seconds: f64 = text
+        .parse()
+        .map_err(|_| "expected a number of seconds".to_owned())?;
     Duration::try_from_secs_f64(seconds).map_err(|e| e.to_string())
 }
 

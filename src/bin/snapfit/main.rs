@@ -147,7 +147,12 @@ fn run_check(args: &Check) -> Result<u8, Failure> {
     let file = read(&args.common)?;
     let report = scene::check(&file);
     let text = match format_of(args.format, &args.common) {
-        Format::Json => pretty(&serde_json::to_string(&report).map_err(|e| e.to_string())?, 100) + "\n",
+        Format::Json => {
+            pretty(
+                &serde_json::to_string(&report).map_err(|e| e.to_string())?,
+                100,
+            ) + "\n"
+        }
         Format::Summary => report.to_string(),
     };
     output::write(args.common.out.as_deref(), &text)?;
@@ -159,7 +164,9 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         (Some(path), None) => Some(path.as_path()),
         (Some(path), Some(out)) if path == Path::new("-") => Some(out.as_path()),
         (Some(_), Some(_)) => {
-            return Err("give the picture's path once: to --svg or to --out".to_owned().into());
+            return Err("give the picture's path once: to --svg or to --out"
+                .to_owned()
+                .into());
         }
         (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
     };
@@ -175,7 +182,10 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
     output::spare_input(&common.file, common.out.as_deref())?;
     let mut bytes = Vec::new();
     let (name, done) = if common.file == Path::new("-") {
-        ("<stdin>".to_owned(), std::io::stdin().lock().read_to_end(&mut bytes).map(|_| ()))
+        (
+            "<stdin>".to_owned(),
+            std::io::stdin().lock().read_to_end(&mut bytes).map(|_| ()),
+        )
     } else {
         let name = common.file.display().to_string();
         (name, std::fs::read(&common.file).map(|b| bytes = b))
@@ -211,7 +221,9 @@ fn simulated(
         }
     };
     let options = Options {
-        deadline: engine.time_limit.and_then(|limit| Instant::now().checked_add(limit)),
+        deadline: engine
+            .time_limit
+            .and_then(|limit| Instant::now().checked_add(limit)),
         progress: Some(&tell),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
@@ -223,12 +235,17 @@ fn simulated(
 fn misplanned(file: &SceneFile, error: &PlanError) -> Failure {
     let (PlanError::NeverCollides { phase } | PlanError::Impossible { phase }) = error;
     let place = format!("motion.{phase}.until");
-    Failure::Scene(vec![file.error_at(&place, "endless-motion").message(error.to_string())])
+    Failure::Scene(vec![
+        file.error_at(&place, "endless-motion")
+            .message(error.to_string()),
+    ])
 }
 
 fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     let unbuilt = |option: &str, asked: &str, built: &str| {
-        Failure::Message(format!("--{option} {asked} is not built yet; there is: {built}"))
+        Failure::Message(format!(
+            "--{option} {asked} is not built yet; there is: {built}"
+        ))
     };
     match engine.arithmetic {
         Arithmetic::Exact => {}
@@ -254,7 +271,11 @@ fn status(trajectory: &Trajectory) -> u8 {
 
 fn format_of(asked: Option<Format>, common: &Common) -> Format {
     let watched = common.out.is_none() && std::io::stdout().is_terminal();
-    asked.unwrap_or(if watched { Format::Summary } else { Format::Json })
+    asked.unwrap_or(if watched {
+        Format::Summary
+    } else {
+        Format::Json
+    })
 }
 
 /// Colours only on a terminal, and not where the user wants none (NO_COLOR).
@@ -278,22 +299,36 @@ fn complain(failure: &Failure) {
     let _ = match failure {
         Failure::Message(message) => writeln!(stderr, "snapfit: {message}"),
         Failure::Scene(diagnostics) => {
-            let rendering = match std::io::stderr().is_terminal() {
-                false => Rendering::Plain,
-                true if colour_on(true) => Rendering::Colour,
-                true => Rendering::Unicode,
-            };
-            let all: String = diagnostics.iter().map(|d| d.render(rendering)).collect();
+            let all: String = diagnostics.iter().map(told).collect();
             stderr.write_all(all.as_bytes())
         }
     };
+}
+
+/// A diagnostic: with a picture of the place on a terminal, else a line that tools understand.
+fn told(d: &Diagnostic) -> String {
+    if std::io::stderr().is_terminal() {
+        return d.render(if colour_on(true) {
+            Rendering::Colour
+        } else {
+            Rendering::Unicode
+        });
+    }
+    match d.advice() {
+        Some(advice) => format!("{d}\n  help: {advice}\n"),
+        None => format!("{d}\n"),
+    }
 }
 
 /// What clap makes of the arguments: help, the version, or an error.
 fn usage(error: &clap::Error) -> u8 {
     let _ = error.print();
     if error.kind() == ErrorKind::InvalidSubcommand {
-        let _ = writeln!(std::io::stderr(), "\nThere is: {}", args::verbs().join(", "));
+        let _ = writeln!(
+            std::io::stderr(),
+            "\nThere is: {}",
+            args::verbs().join(", ")
+        );
     }
     if error.use_stderr() { BAD } else { DECIDED }
 }
@@ -307,7 +342,9 @@ fn report_panics() {
         let what = payload.downcast_ref::<&str>().copied();
         let what = what.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
         let what = what.unwrap_or("unknown").replace('\n', " ");
-        let place = info.location().map_or_else(String::new, |l| format!(" at {l}"));
+        let place = info
+            .location()
+            .map_or_else(String::new, |l| format!(" at {l}"));
         let _ = writeln!(
             std::io::stderr(),
             "snapfit {}: internal error{place}: {what}. This is a bug: please report it together \

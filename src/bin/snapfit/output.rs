@@ -39,7 +39,11 @@ fn replace(path: &Path, text: &str) -> io::Result<()> {
     let old = fs::metadata(&target).ok();
     if old.as_ref().is_some_and(|m| !m.is_file()) {
         // A device or a pipe has no content to lose; a directory refuses by itself.
-        return match fs::OpenOptions::new().write(true).open(&target)?.write_all(text.as_bytes()) {
+        return match fs::OpenOptions::new()
+            .write(true)
+            .open(&target)?
+            .write_all(text.as_bytes())
+        {
             Err(e) if e.kind() == ErrorKind::BrokenPipe => Ok(()),
             other => other,
         };
@@ -67,7 +71,11 @@ fn create_beside(target: &Path) -> io::Result<(PathBuf, fs::File)> {
         beside.push(name);
         beside.push(format!(".{}-{attempt}.part", std::process::id()));
         let beside = target.with_file_name(beside);
-        match fs::OpenOptions::new().write(true).create_new(true).open(&beside) {
+        match fs::OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&beside)
+        {
             Ok(file) => return Ok((beside, file)),
             Err(e) if e.kind() == ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
             Err(e) => return Err(e),

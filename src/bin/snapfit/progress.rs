@@ -48,7 +48,10 @@ impl Spinner {
     pub(crate) fn tell(&self, p: Progress) {
         if let Some(news) = &self.news {
             let (phase, pawl) = (p.phase, p.pawl);
-            let _ = news.send(format!("phase {phase} of {}, pawl {pawl}: {} arcs", p.phases, p.arcs));
+            let _ = news.send(format!(
+                "phase {phase} of {}, pawl {pawl}: {} arcs",
+                p.phases, p.arcs
+            ));
         }
     }
 }

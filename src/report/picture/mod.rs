@@ -1,10 +1,11 @@
 //! Pictures: the mechanism at its events (as in DP Fig. 4), and θ over time, as one SVG file.
 //!
 //! A picture is drawn from the scene and the finished result document, in doubles: nothing here
-//! decides anything. [`stage`](self) turns both into shapes and curves, `panels` draws the small
-//! multiples, `plot` the histories; letters tie an instant of the one to the same instant of the
+//! decides anything. `stage` turns both into shapes and curves, `panels` draws the small
+//! multiples (`names` finds room for the obstacles' names), `plot` the histories; letters tie an instant of the one to the same instant of the
 //! other.
 
+mod names;
 mod panels;
 mod plot;
 mod stage;
@@ -27,7 +28,15 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
     let mut page = Svg::new();
     let inner = WIDTH - 2.0 * MARGIN;
     let mut y = MARGIN + 16.0;
-    page.text(MARGIN, y, 17.0, INK, "start", true, &fit(&headline(result), 17.0, inner));
+    page.text(
+        MARGIN,
+        y,
+        17.0,
+        INK,
+        "start",
+        true,
+        &fit(&headline(result), 17.0, inner),
+    );
     if let Some(why) = reason(result) {
         for line in wrap(&why, 12.5, inner) {
             y += 18.0;
@@ -37,7 +46,13 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
     y += 20.0;
     y = panels::draw(&mut page, &stage, &moments, [MARGIN, y, inner]);
     y += 26.0;
-    y = plot::draw(&mut page, &stage, result, &moments, [MARGIN, y, inner]);
+    y = plot::draw(
+        &mut page,
+        &stage,
+        result,
+        &moments.chosen,
+        [MARGIN, y, inner],
+    );
     page.finish(WIDTH, y + MARGIN, &result.scene, &headline(result))
 }
 

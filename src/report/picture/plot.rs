@@ -98,7 +98,14 @@ pub(super) fn draw(
         } else {
             "θ".to_owned()
         };
-        strip(page, &axes, &stage.pawls[i].track, history, colour(i), &title);
+        strip(
+            page,
+            &axes,
+            &stage.pawls[i].track,
+            history,
+            colour(i),
+            &title,
+        );
         strip_top += height + STRIP_GAP;
     }
     let below = time_axis(page, &whole);
@@ -108,7 +115,11 @@ pub(super) fn draw(
 /// Which degrees a strip shows: all of the history and rest, with some air.
 fn range(track: &[Stroke], history: &PawlDocument) -> [f64; 2] {
     let strokes = track.iter().flat_map(|s| s.points.iter().map(|p| p[1]));
-    let events = history.events.iter().flat_map(|e| [Some(e.theta), e.to_theta]).flatten();
+    let events = history
+        .events
+        .iter()
+        .flat_map(|e| [Some(e.theta), e.to_theta])
+        .flatten();
     let (mut lo, mut hi) = (0.0f64, 0.0f64);
     for theta in strokes.chain(events).filter(|t| t.is_finite()) {
         lo = lo.min(theta.to_degrees());
@@ -147,25 +158,55 @@ fn letters(page: &mut Svg, moments: &[Moment], axes: &Axes, y: f64) {
         at[i] = at[i].max(least);
     }
     for i in (0..at.len()).rev() {
-        let most = if i + 1 == at.len() { left + width } else { at[i + 1] - ROOM };
+        let most = if i + 1 == at.len() {
+            left + width
+        } else {
+            at[i + 1] - ROOM
+        };
         at[i] = at[i].min(most);
     }
     for (m, lx) in moments.iter().zip(&at) {
         let x = axes.x(m.t);
         page.text(*lx, y + 8.0, 11.5, INK, "middle", true, &m.letter);
-        page.polyline(&[[*lx, y + 11.0], [x, top], [x, top + height]], "#b8c2cc", 0.8, "2 3");
+        page.polyline(
+            &[[*lx, y + 11.0], [x, top], [x, top + height]],
+            "#b8c2cc",
+            0.8,
+            "2 3",
+        );
     }
 }
 
-fn strip(page: &mut Svg, axes: &Axes, track: &[Stroke], history: &PawlDocument, colour: &str, title: &str) {
+fn strip(
+    page: &mut Svg,
+    axes: &Axes,
+    track: &[Stroke],
+    history: &PawlDocument,
+    colour: &str,
+    title: &str,
+) {
     let [left, top, width, height] = axes.rect;
     let step = degree_step(axes.degrees[1] - axes.degrees[0]);
     let mut k = (axes.degrees[0] / step).ceil();
     while k * step <= axes.degrees[1] {
         let y = axes.y(k * step);
         let rest = k == 0.0;
-        page.line([left, y], [left + width, y], if rest { RULE } else { "#d3dae1" }, if rest { 1.0 } else { 0.6 }, "");
-        page.text(left - 7.0, y + 3.8, 11.0, MUTED, "end", false, &(digits(k * step, 6) + "°"));
+        page.line(
+            [left, y],
+            [left + width, y],
+            if rest { RULE } else { "#d3dae1" },
+            if rest { 1.0 } else { 0.6 },
+            "",
+        );
+        page.text(
+            left - 7.0,
+            y + 3.8,
+            11.0,
+            MUTED,
+            "end",
+            false,
+            &(digits(k * step, 6) + "°"),
+        );
         k += 1.0;
     }
     for stroke in track {
@@ -192,7 +233,11 @@ fn strip(page: &mut Svg, axes: &Axes, track: &[Stroke], history: &PawlDocument, 
         .filter(|p| p[0] >= from[0] && p[0] <= from[1])
         .any(|p| axes.at(*p)[1] < top + 26.0);
     let y = if high { top + height - 8.0 } else { top + 16.0 };
-    page.rect([left + 4.0, y - 12.0, text_width(&title, 12.0) + 8.0, 16.0], "#ffffff", "none");
+    page.rect(
+        [left + 4.0, y - 12.0, text_width(&title, 12.0) + 8.0, 16.0],
+        "#ffffff",
+        "none",
+    );
     page.text(left + 8.0, y, 12.0, colour, "start", true, &title);
 }
 
@@ -204,10 +249,26 @@ fn time_axis(page: &mut Svg, axes: &Axes) -> f64 {
     while k * step <= axes.t[1] * (1.0 + 1e-9) {
         let x = axes.x(k * step);
         page.line([x, y], [x, y + 4.0], RULE, 1.0, "");
-        page.text(x, y + 17.0, 11.0, MUTED, "middle", false, &digits(k * step, 6));
+        page.text(
+            x,
+            y + 17.0,
+            11.0,
+            MUTED,
+            "middle",
+            false,
+            &digits(k * step, 6),
+        );
         k += 1.0;
     }
-    page.text(left + width / 2.0, y + 33.0, 12.0, INK, "middle", false, "time t");
+    page.text(
+        left + width / 2.0,
+        y + 33.0,
+        12.0,
+        INK,
+        "middle",
+        false,
+        "time t",
+    );
     y + 36.0
 }
 

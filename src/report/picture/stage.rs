@@ -1,13 +1,13 @@
 //! The scene and its motion in doubles: bodies as points, θ over t as curves to be drawn.
 
 use super::svg::Point;
+use crate::geometry::Vec2;
 use crate::number::Rat;
 use crate::report::json::{
     ContactDocument, CurveDocument, EventContact, PawlDocument, ResultDocument,
     RootContactDocument, SegmentDocument,
 };
 use crate::scene::Scene;
-use crate::geometry::Vec2;
 use std::f64::consts::TAU;
 
 /// How many pieces a curved stretch is drawn with.
@@ -99,7 +99,11 @@ impl Stage {
             .map(|(pawl, history)| Pawl {
                 name: pawl.name.clone(),
                 hinge: point(&pawl.hinge),
-                ring: pawl.vertices.iter().map(|v| point(&(v - &pawl.hinge))).collect(),
+                ring: pawl
+                    .vertices
+                    .iter()
+                    .map(|v| point(&(v - &pawl.hinge)))
+                    .collect(),
                 track: track(history, &phases),
             })
             .collect();
@@ -109,7 +113,11 @@ impl Stage {
             all
         };
         Stage {
-            obstacles: scene.obstacles.iter().map(|o| (o.name.clone(), rings(o))).collect(),
+            obstacles: scene
+                .obstacles
+                .iter()
+                .map(|o| (o.name.clone(), rings(o)))
+                .collect(),
             root: scene.root.as_ref().map(|r| ring(&r.vertices)),
             pawls,
             phases,
@@ -132,14 +140,21 @@ impl Stage {
     pub(super) fn pawl_at(&self, pawl: usize, offset: Point, theta: f64) -> Vec<Point> {
         let p = &self.pawls[pawl];
         let hinge = sum(p.hinge, offset);
-        p.ring.iter().map(|v| sum(turned(*v, theta), hinge)).collect()
+        p.ring
+            .iter()
+            .map(|v| sum(turned(*v, theta), hinge))
+            .collect()
     }
 
     /// θ of a pawl at an instant of a phase.
     pub(super) fn theta(&self, pawl: usize, phase: usize, t: f64) -> f64 {
         let track = &self.pawls[pawl].track;
         let on = |s: &&Stroke| s.phase == phase && s.spans(t);
-        match track.iter().find(on).or_else(|| track.iter().rfind(|s| s.points[0][0] <= t)) {
+        match track
+            .iter()
+            .find(on)
+            .or_else(|| track.iter().rfind(|s| s.points[0][0] <= t))
+        {
             Some(stroke) => stroke.theta(t),
             None => 0.0,
         }
@@ -159,16 +174,25 @@ impl Stage {
             ring.get(vertex as usize).copied()
         };
         match contact {
-            EventContact::Pawl(ContactDocument::B { pawl_vertex, .. }) => {
-                self.pawl_at(pawl, offset, theta).get(*pawl_vertex as usize).copied()
-            }
+            EventContact::Pawl(ContactDocument::B { pawl_vertex, .. }) => self
+                .pawl_at(pawl, offset, theta)
+                .get(*pawl_vertex as usize)
+                .copied(),
             EventContact::Root(RootContactDocument::B { root_vertex, .. }) => {
                 self.root_at(offset)?.get(*root_vertex as usize).copied()
             }
-            EventContact::Pawl(ContactDocument::A { obstacle, obstacle_vertex, hole, .. })
-            | EventContact::Root(RootContactDocument::A { obstacle, obstacle_vertex, hole, .. }) => {
-                of_obstacle(obstacle, *hole, *obstacle_vertex)
-            }
+            EventContact::Pawl(ContactDocument::A {
+                obstacle,
+                obstacle_vertex,
+                hole,
+                ..
+            })
+            | EventContact::Root(RootContactDocument::A {
+                obstacle,
+                obstacle_vertex,
+                hole,
+                ..
+            }) => of_obstacle(obstacle, *hole, *obstacle_vertex),
             EventContact::Pawl(ContactDocument::Limit { .. }) => None,
         }
     }
@@ -186,7 +210,11 @@ fn track(history: &PawlDocument, phases: &[Phase]) -> Vec<Stroke> {
         for k in 0..=pieces {
             // Dense towards both ends, where a curve may turn vertical.
             let share = 0.5 - 0.5 * (std::f64::consts::PI * k as f64 / pieces as f64).cos();
-            let t = if k == pieces { to } else { from + share * (to - from) };
+            let t = if k == pieces {
+                to
+            } else {
+                from + share * (to - from)
+            };
             let theta = curve.as_ref().map_or(0.0, |c| c.theta(t));
             let near = match points.last() {
                 Some(last) => last[1],
@@ -214,7 +242,10 @@ impl Stroke {
         self.points[0][0] <= t && self.points.last().is_some_and(|p| p[0] >= t)
     }
     fn theta(&self, t: f64) -> f64 {
-        let near = self.points.iter().min_by(|a, b| (a[0] - t).abs().total_cmp(&(b[0] - t).abs()));
+        let near = self
+            .points
+            .iter()
+            .min_by(|a, b| (a[0] - t).abs().total_cmp(&(b[0] - t).abs()));
         match (&self.curve, near) {
             (Some(c), Some(near)) if self.spans(t) => lifted(c.theta(t), near[1]),
             (_, Some(near)) => near[1],
@@ -229,7 +260,13 @@ impl Curve {
         let read = |s: &String| s.parse::<Rat>().unwrap_or_default();
         let (p, q) = (curve.p.each_ref().map(read), curve.q.each_ref().map(read));
         let largest = p.iter().chain(&q).map(Rat::abs).max().unwrap_or_default();
-        let scaled = |c: &Rat| if largest.is_zero() { 0.0 } else { double(&(c / &largest)) };
+        let scaled = |c: &Rat| {
+            if largest.is_zero() {
+                0.0
+            } else {
+                double(&(c / &largest))
+            }
+        };
         Curve {
             p: p.each_ref().map(scaled),
             q: q.each_ref().map(scaled),
@@ -242,7 +279,15 @@ impl Curve {
         let [c, b, a] = [0, 1, 2].map(|i| self.p[i] + t * self.q[i]);
         let root = (b * b - 4.0 * a * c).max(0.0).sqrt() * self.sign;
         // u = n/d, in whichever form loses no digits; atan2 takes d = 0 in its stride.
-        let (n, d) = if root * b <= 0.0 { (root - b, 2.0 * a) } else { (-2.0 * c, root + b) };
-        if d < 0.0 { 2.0 * (-n).atan2(-d) } else { 2.0 * n.atan2(d) }
+        let (n, d) = if root * b <= 0.0 {
+            (root - b, 2.0 * a)
+        } else {
+            (-2.0 * c, root + b)
+        };
+        if d < 0.0 {
+            2.0 * (-n).atan2(-d)
+        } else {
+            2.0 * n.atan2(d)
+        }
     }
 }

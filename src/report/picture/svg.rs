@@ -34,10 +34,18 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
 
 /// A coordinate to a hundredth of a pixel.
 fn n(x: f64) -> String {
-    let x = if x.is_finite() { x.clamp(-1e6, 1e6) } else { 0.0 };
+    let x = if x.is_finite() {
+        x.clamp(-1e6, 1e6)
+    } else {
+        0.0
+    };
     let text = format!("{x:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
 }
 
 /// Text safe between tags and within quotes.
@@ -85,7 +93,10 @@ impl Svg {
         self.body.push('\n');
     }
 
-    #[allow(clippy::too_many_arguments, reason = "a line of text has as many properties")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "a line of text has as many properties"
+    )]
     pub(super) fn text(
         &mut self,
         x: f64,
@@ -122,7 +133,10 @@ impl Svg {
     }
 
     pub(super) fn polyline(&mut self, points: &[Point], stroke: &str, width: f64, dash: &str) {
-        let style = format!("fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{}\"", n(width));
+        let style = format!(
+            "fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{}\"",
+            n(width)
+        );
         let dash = if dash.is_empty() {
             String::new()
         } else {
@@ -167,7 +181,10 @@ impl Svg {
         let foot = [b[0] - 7.0 * ux, b[1] - 7.0 * uy];
         self.line(a, foot, stroke, 1.6, "");
         let side = |s: f64| [foot[0] - 3.2 * s * uy, foot[1] + 3.2 * s * ux];
-        self.shape(&[vec![side(1.0), b, side(-1.0)]], &format!("fill=\"{stroke}\""));
+        self.shape(
+            &[vec![side(1.0), b, side(-1.0)]],
+            &format!("fill=\"{stroke}\""),
+        );
     }
 
     /// Opens a group that shows only what lies in a rectangle; close it with [`Svg::end`].
@@ -196,7 +213,10 @@ impl Svg {
         match kind {
             "translational-collision" => self.circle(at, 4.2, colour, white, 0.8),
             "sliding-collision" => {
-                self.shape(&poly(&[[0.0, -5.0], [5.0, 0.0], [0.0, 5.0], [-5.0, 0.0]]), &filled);
+                self.shape(
+                    &poly(&[[0.0, -5.0], [5.0, 0.0], [0.0, 5.0], [-5.0, 0.0]]),
+                    &filled,
+                );
             }
             "release" => self.circle(at, 3.8, white, colour, 1.6),
             "graze" => self.circle(at, 2.4, white, colour, 1.0),
@@ -211,11 +231,17 @@ impl Svg {
                 self.shape(&poly(&[[-4.8, 3.8], [4.8, 3.8], [0.0, -4.8]]), &filled);
             }
             "limit-stop" => {
-                self.shape(&poly(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]), &filled);
+                self.shape(
+                    &poly(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]]),
+                    &filled,
+                );
             }
             "stick" => {
                 let hold = format!("fill=\"{INK}\" stroke=\"{white}\" stroke-width=\"0.8\"");
-                self.shape(&poly(&[[-4.6, -4.6], [4.6, -4.6], [4.6, 4.6], [-4.6, 4.6]]), &hold);
+                self.shape(
+                    &poly(&[[-4.6, -4.6], [4.6, -4.6], [4.6, 4.6], [-4.6, 4.6]]),
+                    &hold,
+                );
             }
             "jam-incompatible" | "jam-single" => {
                 for s in [-1.0, 1.0] {
@@ -243,7 +269,13 @@ impl Svg {
 fn path(points: &[Point], closed: bool) -> String {
     let mut d = String::new();
     for (i, p) in points.iter().enumerate() {
-        let _ = write!(d, "{}{} {}", if i == 0 { "M" } else { "L" }, n(p[0]), n(p[1]));
+        let _ = write!(
+            d,
+            "{}{} {}",
+            if i == 0 { "M" } else { "L" },
+            n(p[0]),
+            n(p[1])
+        );
     }
     if closed {
         d.push('Z');
@@ -282,7 +314,10 @@ mod tests {
 
     #[test]
     fn names_cannot_break_out() {
-        assert_eq!(escape("<a & \"b\">\u{1}"), "&lt;a &amp; &quot;b&quot;&gt;\u{fffd}");
+        assert_eq!(
+            escape("<a & \"b\">\u{1}"),
+            "&lt;a &amp; &quot;b&quot;&gt;\u{fffd}"
+        );
     }
 
     #[test]
@@ -290,7 +325,10 @@ mod tests {
         let wall = [[-1e9, 0.0], [1e9, 0.0], [1e9, 1.0], [-1e9, 1.0]];
         let cut = clipped(&wall, [-2.0, -2.0, 2.0, 2.0]);
         assert_eq!(cut.len(), 4);
-        assert!(cut.iter().all(|p| p[0].abs() <= 2.0 && (0.0..=1.0).contains(&p[1])));
+        assert!(
+            cut.iter()
+                .all(|p| p[0].abs() <= 2.0 && (0.0..=1.0).contains(&p[1]))
+        );
         assert!(clipped(&wall, [0.0, 5.0, 1.0, 6.0]).is_empty());
     }
 }
