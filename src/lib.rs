@@ -45,6 +45,7 @@
 //! # }
 //! ```
 
+pub mod analysis;
 pub mod certificate;
 pub mod contact;
 pub mod face;

@@ -317,9 +317,10 @@ impl<'a> Check<'a> {
                 continue;
             }
             if let (Some(l), Some(u)) = (self.bound(v, false), self.bound(v, true))
-                && l == u {
-                    continue;
-                }
+                && l == u
+            {
+                continue;
+            }
             let sign = if v < n {
                 // c − a·Y, asked as −(a·Y − c)
                 -prices.sign::<Q>(&lines(&self.row_step, &self.columns[v]), &self.cost(v))

@@ -32,9 +32,10 @@ pub fn to_json(model: &Model, file: &str, outcome: &Outcome) -> Value {
     });
     if let Some(map) = out.as_object_mut() {
         if outcome.accuracy == "float"
-            && let Some(Value::Object(objective)) = map.get_mut("objective") {
-                objective.remove("exact");
-            }
+            && let Some(Value::Object(objective)) = map.get_mut("objective")
+        {
+            objective.remove("exact");
+        }
         if let Some(reason) = &outcome.reason {
             map.insert("reason".into(), json!(reason));
         }

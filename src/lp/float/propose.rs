@@ -54,24 +54,25 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     };
     let sizes = (program.n + program.m) as u64;
     let mut done = false;
-    if large
-        && let Some(mut engine) = from_interior(1.0) {
-            engine.most = 2 * sizes + 1000;
-            let ending = engine.optimise(false, budget);
-            done = take(&engine, ending);
-        }
+    if large && let Some(mut engine) = from_interior(1.0) {
+        engine.most = 2 * sizes + 1000;
+        let ending = engine.optimise(false, budget);
+        done = take(&engine, ending);
+    }
     if !done {
         let mut engine = Engine::slack(&program);
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(true, budget);
         done = take(&engine, ending);
     }
-    if !done && !large
-        && let Some(mut engine) = from_interior(1.0) {
-            engine.most = 4 * sizes + 1000;
-            let ending = engine.optimise(false, budget);
-            take(&engine, ending);
-        }
+    if !done
+        && !large
+        && let Some(mut engine) = from_interior(1.0)
+    {
+        engine.most = 4 * sizes + 1000;
+        let ending = engine.optimise(false, budget);
+        take(&engine, ending);
+    }
     let (status, ending, objective) =
         best.unwrap_or_else(|| (Engine::slack(&program).status, Ending::Stuck, f64::NAN));
     Proposal {

@@ -527,11 +527,13 @@ impl<'a> Parser<'a> {
         let j = self.column(name);
         self.at += 1;
         if let Token::Name(word) = *self.peek(0)
-            && sides.is_empty() && word.eq_ignore_ascii_case("free") {
-                self.at += 1;
-                self.model.columns[j].range = Range::free();
-                return Ok(());
-            }
+            && sides.is_empty()
+            && word.eq_ignore_ascii_case("free")
+        {
+            self.at += 1;
+            self.model.columns[j].range = Range::free();
+            return Ok(());
+        }
         if let Some(r) = self.relation() {
             match self.bound_value()? {
                 Some(value) => sides.push((r, value)),
