@@ -14,7 +14,7 @@
 //! * [`geometry`]: points, rational rotations, polygons, exact predicates.
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
-//! * [`slice`]: the cylinder of one phase, cut by monotone arcs with named ends.
+//! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
 //!
 //! ```

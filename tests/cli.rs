@@ -1,5 +1,7 @@
 //! The command line from outside: exit statuses, streams, and files that are never lost.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use std::fs;
 use std::io::{Read, Write};
 use std::path::PathBuf;

@@ -77,7 +77,10 @@ fn two_unrelated_contacts_at_an_irrational_angle() {
          11/4 | root(-3, 24, 29) near 0.11 | phase-end
          11/4 | root(-3, 24, 29) near 0.11 | plan-end",
     )
-    .segments("p", "0 | 3/2 | free\n 3/2 | 5/2 | B3@block.2\n 5/2 | 11/4 | B1@floor.2");
+    .segments(
+        "p",
+        "0 | 3/2 | free\n 3/2 | 5/2 | B3@block.2\n 5/2 | 11/4 | B1@floor.2",
+    );
 }
 
 /// A tip falls exactly into a groove's reflex corner: (4,3)·dθ runs into the right wall,
@@ -210,7 +213,9 @@ fn a_slot_of_zero_clearance() {
 /// Of clearance 2⁻²⁰⁰: it opens, and rest lies in it.
 #[test]
 fn a_slot_of_the_least_clearance() {
-    slot(&two_to(-200)).outcome("completed 3").segments("p", "0 | 3 | free");
+    slot(&two_to(-200))
+        .outcome("completed 3")
+        .segments("p", "0 | 3 | free");
 }
 
 /// Started inside: of zero clearance there is no interval at all.
@@ -524,8 +529,54 @@ fn listings() {
         ("20,0 -20,0 -20,-1 20,-1", 0),
         ("-20,-1 0,-1 20,-1 20,0 -20,0", 3),
     ] {
-        for (pawl, v) in [("0,0 3,-4 4,-1", 1), ("4,-1 3,-4 0,0", 1), ("3,-4 4,-1 2,-1/2 0,0", 0)] {
-            tell(&format!("floor: {floor}\npawl p at 0,6: {pawl}\nmove 0,-1 for 3")).events(&story(e, v));
+        for (pawl, v) in [
+            ("0,0 3,-4 4,-1", 1),
+            ("4,-1 3,-4 0,0", 1),
+            ("3,-4 4,-1 2,-1/2 0,0", 0),
+        ] {
+            tell(&format!(
+                "floor: {floor}\npawl p at 0,6: {pawl}\nmove 0,-1 for 3"
+            ))
+            .events(&story(e, v));
         }
     }
+}
+
+// ── arcs closed around the cylinder ─────────────────────────────────────────────────────────
+
+/// A square about its hinge over a peg's tip: nearer than the half-diagonal 2√2 it can turn only in
+/// four windows about 0, 90°, 180°, 270°, of half-width ψ with cos ψ = 2/|w|; the closed pieces between
+/// them end in cusps, corner on tip, and all their ends together run around the cylinder. Started
+/// in the window at 90°, |w| = 5/2, tan(ψ/2) = 1/3, it snaps to that window's lower end,
+/// (1 − 1/3)/(1 + 1/3) = 1/2; lifted off it is let go at |w| = 2√2, at 45°.
+#[test]
+fn windows_around_the_cylinder() {
+    tell(
+        "peg: 0,0 -1,-3 1,-3
+         pawl p at 0,5/2: -2,-2 2,-2 2,2 -2,2; start 1
+         move 0,1 for 1",
+    )
+    .events(
+        "0 | 1 > 1/2 | snap-free / snap-free-vertex
+         0 | 1/2 | snap-landing | A3@peg.0
+         -5/2+2√2 | -1+√2 > 0 | snap-free-vertex | A3@peg.0
+         1 | 0 | phase-end
+         1 | 0 | plan-end",
+    )
+    .segments("p", "0 | -5/2+2√2 | A3@peg.0\n -5/2+2√2 | 1 | free");
+}
+
+/// Pressed down on the tip instead: the window closes at |w| = 2. From w = (6/5, −2) it is struck at
+/// rest, and w = (6/5, −8/5) is the end, u = 1/3.
+#[test]
+fn a_window_closes() {
+    tell(
+        "peg: 0,0 -1,-3 1,-3
+         pawl p at -6/5,5: -2,-2 2,-2 2,2 -2,2
+         move 0,-1 for 5",
+    )
+    .events(
+        "3 | 0 | translational-collision | A0@peg.0
+         17/5 | 1/3 | jam-single | A0@peg.0",
+    );
 }

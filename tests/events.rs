@@ -117,7 +117,10 @@ fn sliding_collision_b_to_a_at_a_vertex() {
          4 | -2+√5 | phase-end
          4 | -2+√5 | plan-end",
     )
-    .segments("p", "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | A0@floor.2")
+    .segments(
+        "p",
+        "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | A0@floor.2",
+    )
     .outcome("completed 4");
 }
 
@@ -137,7 +140,10 @@ fn sliding_collision_b_to_b_when_an_edge_lies_flush() {
          7/2 | -12/71+5/71√37 | phase-end
          7/2 | -12/71+5/71√37 | plan-end",
     )
-    .segments("p", "0 | 2 | free\n 2 | 3 | B2@floor.2\n 3 | 7/2 | B1@floor.2")
+    .segments(
+        "p",
+        "0 | 2 | free\n 2 | 3 | B2@floor.2\n 3 | 7/2 | B1@floor.2",
+    )
     .outcome("completed 7/2");
 }
 
@@ -158,7 +164,10 @@ fn sliding_collision_with_another_obstacle() {
          4 | -1/2+1/6√21 | phase-end
          4 | -1/2+1/6√21 | plan-end",
     )
-    .segments("p", "0 | 5/4 | free\n 5/4 | 3 | B3@block.2\n 3 | 4 | B1@floor.2")
+    .segments(
+        "p",
+        "0 | 5/4 | free\n 5/4 | 3 | B3@block.2\n 3 | 4 | B1@floor.2",
+    )
     .outcome("completed 4");
 }
 
@@ -554,7 +563,8 @@ fn jam_at_a_stop() {
 #[test]
 fn bifurcation() {
     let told = on_floor("pawl p at 0,8: 0,0 0,-5 1,-2\n move 0,-1 for 5");
-    told.events("3 | 0 | bifurcation | B1@floor.2").outcome("bifurcated 3 p");
+    told.events("3 | 0 | bifurcation | B1@floor.2")
+        .outcome("bifurcated 3 p");
     let branches = &told.trajectory.outcome.branches;
     let found: Vec<(i32, String, bool)> = branches
         .iter()

@@ -12,8 +12,8 @@ use proptest::prelude::*;
 use proptest::test_runner::Config;
 use snapfit::contact::Contact;
 use snapfit::geometry::Vec2;
-use snapfit::motion::trajectory::{Event, EventKind, OutcomeKind, Trajectory};
 use snapfit::motion::Angle;
+use snapfit::motion::trajectory::{Event, EventKind, OutcomeKind, Trajectory};
 use snapfit::number::{Algebraic, Int, Poly, Rat};
 use snapfit::scene::{Motion, Obstacle, Scene};
 use snapfit::slice::Time;
@@ -29,21 +29,27 @@ use world::scenes::{Recipe, random_scene, starts_free};
 fn scenes() -> impl Strategy<Value = Scene> {
     let size = (1usize..=2, 1usize..=3, 3usize..=7, 1usize..=3);
     let on = (any::<bool>(), 0u8..6, 0u8..6);
-    (any::<u32>(), size, prop::sample::select(vec![1i64, 1, 2, 4, 7]), on).prop_map(
-        |(seed, (pawls, obstacles, corners, phases), grid, (friction, limits, root))| {
-            random_scene(&Recipe {
-                seed: u64::from(seed),
-                pawls,
-                obstacles,
-                corners,
-                grid,
-                friction,
-                limits: limits == 5,
-                root: root == 5,
-                phases,
-            })
-        },
+    (
+        any::<u32>(),
+        size,
+        prop::sample::select(vec![1i64, 1, 2, 4, 7]),
+        on,
     )
+        .prop_map(
+            |(seed, (pawls, obstacles, corners, phases), grid, (friction, limits, root))| {
+                random_scene(&Recipe {
+                    seed: u64::from(seed),
+                    pawls,
+                    obstacles,
+                    corners,
+                    grid,
+                    friction,
+                    limits: limits == 5,
+                    root: root == 5,
+                    phases,
+                })
+            },
+        )
 }
 
 fn rational() -> impl Strategy<Value = Rat> {

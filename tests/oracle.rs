@@ -78,12 +78,22 @@ fn random_scenes_agree_with_brute_force() {
         for (seed, e, scene) in &wrong {
             let like = kind(e.split_once(": ").map_or(e, |x| x.1));
             let again = |s: &Scene| compare(s, *seed, 40, 150).err();
-            let small = shrink(scene, &|s| again(s).is_some_and(|x| kind(&x).ends_with(&like)));
+            let small = shrink(scene, &|s| {
+                again(s).is_some_and(|x| kind(&x).ends_with(&like))
+            });
             eprintln!("── seed {seed}: {:?}\n{}", again(&small), small.to_toml());
         }
     }
-    let list: Vec<String> = wrong.iter().map(|w| format!("seed {}: {}", w.0, w.1)).collect();
-    assert!(list.is_empty(), "{} of {n}:\n{}", list.len(), list.join("\n"));
+    let list: Vec<String> = wrong
+        .iter()
+        .map(|w| format!("seed {}: {}", w.0, w.1))
+        .collect();
+    assert!(
+        list.is_empty(),
+        "{} of {n}:\n{}",
+        list.len(),
+        list.join("\n")
+    );
 }
 
 /// One scene from the file that TEST_SCENE names, with all that brute force finds.
@@ -118,7 +128,13 @@ fn one_scene() {
         }
     }
     let o = &t.outcome;
-    eprintln!("{:?} at {} phase {} {:?}", o.kind, world::compare::ft(&o.time), o.phase, o.pawl);
+    eprintln!(
+        "{:?} at {} phase {} {:?}",
+        o.kind,
+        world::compare::ft(&o.time),
+        o.phase,
+        o.pawl
+    );
     if std::env::var("TEST_ARCS").is_ok() {
         world::compare::arcs(&scene, &t);
     }

@@ -39,5 +39,10 @@ fn every_random_scene_is_decided() {
         longest = longest.max(begin.elapsed());
     }
     eprintln!("{n} scenes: {outcomes:?}; at most {pairs} pairs, {longest:?}");
-    assert!(wrong.is_empty(), "{} of {n}:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} of {n}:\n{}",
+        wrong.len(),
+        wrong.join("\n")
+    );
 }

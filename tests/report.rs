@@ -1,5 +1,7 @@
 //! The result document against the contract: its shape, its numbers, its order.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use serde_json::Value;
 use snapfit::motion::{Options, simulate};
 use snapfit::number::{Algebraic, Int, Poly, Rat};
@@ -314,6 +316,35 @@ fn the_summary_says_how_when_and_why() {
     assert!(summary(&doc, Style::Ansi).contains("\x1b[1m"));
     let (_, doc) = document(include_str!("data/fork.toml"));
     assert!(summary(&doc, Style::Plain).contains("counter-clockwise, driven by vertex 0"));
+}
+
+/// The mechanisms of examples/ do what their comments say.
+#[test]
+fn examples_end_as_told() {
+    let cases = [
+        ("bayer-hook", "completed", 0.0),
+        ("bayer-hook-steep", "stuck", -2.727),
+        ("ratchet-rack", "jammed", 0.907),
+        ("door-latch", "stuck", 0.0),
+        ("escapement-rack", "completed", -4.98),
+    ];
+    for (name, kind, degrees) in cases {
+        let path = format!("{}/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let (_, doc) = document(&std::fs::read_to_string(path).unwrap());
+        assert_eq!((doc.scene.as_str(), doc.outcome.kind), (name, kind));
+        let last = doc.pawls[0].events.last().unwrap();
+        assert!(
+            (last.theta.to_degrees() - degrees).abs() < 0.01,
+            "{name}: {}",
+            last.theta
+        );
+    }
+    let clicks = document(include_str!("../examples/ratchet-rack.toml")).1;
+    let snaps = clicks.pawls[0]
+        .events
+        .iter()
+        .filter(|e| e.to_theta.is_some());
+    assert_eq!(snaps.count(), 19);
 }
 
 #[test]

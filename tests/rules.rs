@@ -296,7 +296,10 @@ fn tip_on_corner_bifurcates() {
     told.events("2 | 0 | bifurcation").outcome("bifurcated 2 p");
     assert_eq!(
         branches(&told),
-        [(1, "A0@peg.0".to_owned(), false), (-1, "B1@peg.0".to_owned(), false)]
+        [
+            (1, "A0@peg.0".to_owned(), false),
+            (-1, "B1@peg.0".to_owned(), false)
+        ]
     );
 }
 
@@ -314,7 +317,10 @@ fn one_branch_slides_and_the_other_holds() {
         told.events("2 | 0 | bifurcation").outcome("bifurcated 2 p");
         assert_eq!(
             branches(&told),
-            [(1, "A0@peg.0".to_owned(), false), (-1, "B1@peg.0".to_owned(), holds)]
+            [
+                (1, "A0@peg.0".to_owned(), false),
+                (-1, "B1@peg.0".to_owned(), holds)
+            ]
         );
     }
 }
@@ -323,12 +329,14 @@ fn one_branch_slides_and_the_other_holds() {
 #[test]
 fn stuck_where_friction_holds_both() {
     for mu in ["1", "1e-30"] {
-        on_floor(&format!("friction {mu}\npawl p at 0,8: 0,0 0,-5 1,-2\n move 0,-1 for 5"))
-            .events(
-                "?3 | 0 | translational-collision | B1@floor.2
+        on_floor(&format!(
+            "friction {mu}\npawl p at 0,8: 0,0 0,-5 1,-2\n move 0,-1 for 5"
+        ))
+        .events(
+            "?3 | 0 | translational-collision | B1@floor.2
                  3 | 0 | stick | B1@floor.2",
-            )
-            .outcome("stuck 3 p");
+        )
+        .outcome("stuck 3 p");
     }
 }
 
@@ -393,13 +401,23 @@ fn later_phases_do_not_run() {
         ("pawl p at 0,3: 0,0 1,2 -1,2\n", "jammed 3 p"),
         ("friction 1\npawl p at 0,7: 0,0 3,-4 4,-1\n", "stuck 3 p"),
         ("pawl p at 0,8: 0,0 0,-5 1,-2\n", "bifurcated 3 p"),
-        ("root: -1,3 1,3 0,5\npawl p at 0,90: 0,0 1,0 0,1\n", "root-collision 3"),
+        (
+            "root: -1,3 1,3 0,5\npawl p at 0,90: 0,0 1,0 0,1\n",
+            "root-collision 3",
+        ),
     ] {
         let told = on_floor(&(text.to_owned() + "move 0,-1 for 5\nmove 0,1 for 5\nreverse"));
         told.outcome(outcome);
         assert_eq!(told.trajectory.phases.len(), 1);
-        let kinds: Vec<&str> = told.trajectory.pawls[0].events.iter().map(|e| e.kind.name()).collect();
-        assert!(!kinds.contains(&"phase-end") && !kinds.contains(&"plan-end"), "{kinds:?}");
+        let kinds: Vec<&str> = told.trajectory.pawls[0]
+            .events
+            .iter()
+            .map(|e| e.kind.name())
+            .collect();
+        assert!(
+            !kinds.contains(&"phase-end") && !kinds.contains(&"plan-end"),
+            "{kinds:?}"
+        );
     }
 }
 
@@ -536,8 +554,8 @@ fn until_root_collision_without_one() {
         .events("4 | 0 | phase-end\n 4 | 0 | plan-end")
         .outcome("completed 4");
     let s = scene(&(FLOOR.to_owned() + &text + "move 0,1 until root-collision"));
-    let refused = read_scene("x.toml", &s.to_toml()).is_err()
-        || simulate(&s, &Options::default()).is_err();
+    let refused =
+        read_scene("x.toml", &s.to_toml()).is_err() || simulate(&s, &Options::default()).is_err();
     assert!(refused);
 }
 
@@ -624,10 +642,12 @@ fn inside_just_after_sticks() {
 #[test]
 fn parallel_translation_at_rest_never_sticks() {
     for v in ["1,0", "-1,0"] {
-        on_floor(&format!("friction 100\npawl p at 0,4: 0,0 3,-4 4,-1\n move {v} for 3"))
-            .events("3 | 0 | phase-end\n 3 | 0 | plan-end")
-            .segments("p", "0 | 3 | free")
-            .outcome("completed 3");
+        on_floor(&format!(
+            "friction 100\npawl p at 0,4: 0,0 3,-4 4,-1\n move {v} for 3"
+        ))
+        .events("3 | 0 | phase-end\n 3 | 0 | plan-end")
+        .segments("p", "0 | 3 | free")
+        .outcome("completed 3");
     }
 }
 
@@ -643,7 +663,8 @@ fn leaving_at_rest_never_sticks() {
 #[test]
 fn zero_friction_never_holds() {
     on_floor(&("friction 0\n".to_owned() + ARM + "move 0,-1 for 3")).outcome("completed 3");
-    on_floor("friction 0\npawl p at 0,8: 0,0 0,-5 1,-2\n move 0,-1 for 5").outcome("bifurcated 3 p");
+    on_floor("friction 0\npawl p at 0,8: 0,0 0,-5 1,-2\n move 0,-1 for 5")
+        .outcome("bifurcated 3 p");
 }
 
 // ── σ = 0 ───────────────────────────────────────────────────────────────────────────────────
@@ -739,7 +760,10 @@ fn ties_between_kinds() {
 
     let told = on_floor(&format!("friction 1\n{held}{wall}{root}{end}"));
     told.outcome("jammed 3 wall");
-    assert_eq!(kind(&told, 0), ["translational-collision", "stick", "root-collision"]);
+    assert_eq!(
+        kind(&told, 0),
+        ["translational-collision", "stick", "root-collision"]
+    );
 
     on_floor(&format!("friction 1\n{held}{root}{end}")).outcome("stuck 3 held");
     on_floor(&format!("{fork}{root}{end}")).outcome("root-collision 3");
@@ -796,10 +820,16 @@ fn a_phase_that_starts_at_a_vertex_of_free_space() {
          3 | 1/7 | phase-end\n";
     tell(&(head.to_owned() + "move 0,-1 for 1"))
         .events(&(story.to_owned() + "4 | -2+√5 | phase-end\n 4 | -2+√5 | plan-end"))
-        .segments("p", "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | A0@floor.2");
+        .segments(
+            "p",
+            "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | A0@floor.2",
+        );
     tell(&(head.to_owned() + "move -1,0 for 1"))
         .events(&(story.to_owned() + "4 | 1/7 | phase-end\n 4 | 1/7 | plan-end"))
-        .segments("p", "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | B1@floor.2");
+        .segments(
+            "p",
+            "0 | 2 | free\n 2 | 3 | B1@floor.2\n 3 | 4 | B1@floor.2",
+        );
     tell(&(head.to_owned() + "move 1,0 for 2"))
         .events(
             &(story.to_owned()
@@ -867,8 +897,11 @@ fn wound_by_more_than_a_turn() {
          54 | 0 | plan-end",
     )
     .outcome("completed 54");
-    let windings: Vec<[i64; 2]> =
-        told.trajectory.pawls[0].segments.iter().map(|s| s.winding).collect();
+    let windings: Vec<[i64; 2]> = told.trajectory.pawls[0]
+        .segments
+        .iter()
+        .map(|s| s.winding)
+        .collect();
     assert_eq!(windings.first(), Some(&[0, 0]));
     assert!(windings.contains(&[1, 1]));
     assert_eq!(windings.last(), Some(&[0, 0]));

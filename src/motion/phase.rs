@@ -1,7 +1,7 @@
 //! One pawl through one phase: the simple algorithm (DP §9, "Simple Algorithm").
 //!
 //! The state is at rest or on an arc. Find the next time at which anything touches it, look at
-//! the place ([`super::local`]), go on. Each step costs O(n) box tests and few exact ones.
+//! the place (the module `local`), go on. Each step costs O(n) box tests and few exact ones.
 
 use super::friction::stick_time;
 use super::local::{
@@ -231,7 +231,7 @@ impl Runner<'_> {
     fn free_beside(&self, id: ArcId, above: bool, from: &Time) -> bool {
         let slice = self.slice;
         let arc = slice.arc(id);
-        let mut until = arc.end().t.clone();
+        let mut until = self.within_phase(from, arc.end().t.clone());
         for &b in slice.arcs_in(arc.chart) {
             if b != id
                 && let Some(p) = slice.first_meeting(id, b, from, &until)
@@ -246,6 +246,15 @@ impl Runner<'_> {
         }
     }
 
+    /// `until`, but not past the phase's end: what can only be met after it was never made.
+    fn within_phase(&self, from: &Time, until: Time) -> Time {
+        if *from < self.end && self.end < until {
+            self.end.clone()
+        } else {
+            until
+        }
+    }
+
     /// What must hold just after an instant, by the polygons alone: the state's own interval is
     /// free beside it, and at rest nothing penetrates. Asked by debug assertions only.
     fn holds_after(&self, at: &Time) -> bool {
@@ -253,7 +262,7 @@ impl Runner<'_> {
             State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
             State::Rest => {
                 let next = self.rest_hits.iter().find(|t| *t > at);
-                let soon = at.shift(&Rat::one());
+                let soon = self.within_phase(at, at.shift(&Rat::one()));
                 let t = Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
                 self.free_at(Chart::Rest, &Rat::zero(), &t)
             }
@@ -264,7 +273,7 @@ impl Runner<'_> {
     /// where no arc leaves z to the right.
     fn free_along(&self, z: &Point) -> bool {
         let slice = self.slice;
-        let mut until = Time::from(Rat::one());
+        let mut until = self.within_phase(&self.clock, Time::from(Rat::one()));
         for &b in slice.arcs_in(z.chart) {
             let arc = slice.arc(b);
             if !arc.spans_x(&z.x) {

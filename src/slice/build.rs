@@ -90,7 +90,7 @@ struct Named {
 #[derive(PartialEq, Eq, Hash)]
 enum Name {
     /// A pawl vertex on an obstacle vertex, both by their coordinates.
-    VertexVertex(Vec2, Vec2, Chart),
+    VertexVertex(Box<(Vec2, Vec2)>, Chart),
     /// A pawl edge flush on an obstacle edge, both by their supporting lines.
     Flush(u32, u32, Chart),
     /// A vertical tangency of a curve.
@@ -279,7 +279,7 @@ impl<'a> Builder<'a> {
         if a.is_zero() {
             return Rc::new([]);
         }
-        let key = Name::VertexVertex(a.clone(), q.clone(), chart);
+        let key = Name::VertexVertex(Box::new((a.clone(), q.clone())), chart);
         let w = q - &self.frame.p0;
         let v = self.frame.v.clone();
         let list = self.named_roots(key, || {

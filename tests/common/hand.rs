@@ -24,7 +24,7 @@
 //! contacts of the root begin with `root-`. Without a fourth column they are not looked at.
 //!
 //! **Numbers.** `3/7`, `1/2-3√5`, `-√2`, or `root(1, 0, -4) near 0.5`: the real root of
-//! 1 − 4x² (constant first) nearest to 0.5. They are compared exactly.
+//! 1 − 4x² (constant first) nearest to 0.5. They are compared exactly. `*` is any number.
 
 use snapfit::contact::{Contact, ContactKind};
 use snapfit::geometry::Vec2;
@@ -49,7 +49,9 @@ pub fn two_to(k: i32) -> Rat {
 }
 
 fn point(text: &str) -> Vec2 {
-    let (x, y) = text.split_once(',').unwrap_or_else(|| panic!("point {text:?}"));
+    let (x, y) = text
+        .split_once(',')
+        .unwrap_or_else(|| panic!("point {text:?}"));
     Vec2::new(q(x), q(y))
 }
 
@@ -145,7 +147,13 @@ pub fn number(text: &str) -> Algebraic {
     if let Some(rest) = text.strip_prefix("root(") {
         let (coefficients, near) = rest.split_once(')').unwrap();
         let coefficients: Vec<Rat> = coefficients.split(',').map(q).collect();
-        let near: f64 = near.trim().strip_prefix("near").unwrap().trim().parse().unwrap();
+        let near: f64 = near
+            .trim()
+            .strip_prefix("near")
+            .unwrap()
+            .trim()
+            .parse()
+            .unwrap();
         let roots = Poly::from_rats(&coefficients).real_roots();
         let off = |r: &Algebraic| (r.nearest_f64().unwrap() - near).abs();
         return roots
@@ -170,12 +178,19 @@ pub fn number(text: &str) -> Algebraic {
     let c = q(radicand);
     let p = Poly::from_rats(&[a.square() - b.square() * &c, -(&a + &a), Rat::one()]);
     let roots = p.real_roots();
-    let pick = if b.sign() < 0 { roots.first() } else { roots.last() };
+    let pick = if b.sign() < 0 {
+        roots.first()
+    } else {
+        roots.last()
+    };
     pick.unwrap().clone()
 }
 
 /// Whether an orientation is as written.
 fn angle_is(angle: &Angle, text: &str) -> bool {
+    if text == "*" {
+        return true;
+    }
     let (u, winding) = match text.split_once(" w") {
         Some((u, w)) => (u, w.trim().parse::<i64>().unwrap()),
         None => (text, 0),
@@ -193,7 +208,11 @@ fn show_number(x: &Algebraic) -> String {
         _ => format!(
             "{:?} of {:?}",
             x.nearest_f64(),
-            x.minimal_polynomial().coeffs().iter().map(ToString::to_string).collect::<Vec<_>>()
+            x.minimal_polynomial()
+                .coeffs()
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
         ),
     }
 }
@@ -227,7 +246,11 @@ pub fn tell_scene(scene: Scene) -> Told {
         Ok(file) => assert_eq!(*file.scene(), scene, "reads back equal"),
         Err(errors) => panic!(
             "not a scene: {}\n{toml}",
-            errors.iter().map(|d| d.text().to_owned()).collect::<Vec<_>>().join("; ")
+            errors
+                .iter()
+                .map(|d| d.text().to_owned())
+                .collect::<Vec<_>>()
+                .join("; ")
         ),
     }
     let trajectory = simulate(&scene, &Options::default()).unwrap();
@@ -238,7 +261,11 @@ pub fn tell_scene(scene: Scene) -> Told {
 
 impl Told {
     fn index(&self, pawl: &str) -> usize {
-        self.trajectory.pawls.iter().position(|p| p.name == pawl).unwrap()
+        self.trajectory
+            .pawls
+            .iter()
+            .position(|p| p.name == pawl)
+            .unwrap()
     }
 
     /// A contact as the tests write it.
@@ -254,7 +281,11 @@ impl Told {
             } => {
                 let kind = if *kind == ContactKind::B { "B" } else { "A" };
                 let name = &self.scene.obstacles[*obstacle as usize].name;
-                let hole = if *ring > 0 { format!(":{ring}") } else { String::new() };
+                let hole = if *ring > 0 {
+                    format!(":{ring}")
+                } else {
+                    String::new()
+                };
                 format!("{kind}{pawl_feature}@{name}{hole}.{obstacle_feature}")
             }
         }
@@ -263,7 +294,10 @@ impl Told {
     fn root_contact(&self, c: &RootContact) -> String {
         let kind = if c.vertex_of_root { "B" } else { "A" };
         let name = &self.scene.obstacles[c.obstacle as usize].name;
-        format!("root-{kind}{}@{name}.{}", c.root_feature, c.obstacle_feature)
+        format!(
+            "root-{kind}{}@{name}.{}",
+            c.root_feature, c.obstacle_feature
+        )
     }
 
     fn global(&self, phase: usize, t: &Time) -> Time {
@@ -271,7 +305,7 @@ impl Told {
     }
 
     fn time_is(&self, phase: usize, t: &Time, text: &str) -> bool {
-        self.global(phase, t) == Time::at(number(text))
+        text == "*" || self.global(phase, t) == Time::at(number(text))
     }
 
     fn contacts_of(&self, e: &Event) -> Vec<String> {
@@ -282,7 +316,9 @@ impl Told {
     }
 
     fn show(&self, e: &Event) -> String {
-        let to = e.to.as_ref().map_or(String::new(), |a| format!(" > {}", show_angle(a)));
+        let to =
+            e.to.as_ref()
+                .map_or(String::new(), |a| format!(" > {}", show_angle(a)));
         format!(
             "{} | {}{to} | {} | {}",
             show_number(self.global(e.phase, &e.time).exact()),
@@ -394,14 +430,22 @@ impl Told {
         let index = self.index(pawl);
         let segments = &self.trajectory.pawls[index].segments;
         let shown = self.segment_lines(index);
-        let lines: Vec<&str> = text.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
+        let lines: Vec<&str> = text
+            .lines()
+            .map(str::trim)
+            .filter(|l| !l.is_empty())
+            .collect();
         let fits = lines.len() == segments.len()
-            && lines.iter().zip(segments).zip(&shown).all(|((line, s), shown)| {
-                let c: Vec<&str> = line.split('|').map(str::trim).collect();
-                self.time_is(s.phase, &s.from, c[0])
-                    && self.time_is(s.phase, &s.to, c[1])
-                    && shown.split('|').nth(2).map(str::trim) == Some(c[2])
-            });
+            && lines
+                .iter()
+                .zip(segments)
+                .zip(&shown)
+                .all(|((line, s), shown)| {
+                    let c: Vec<&str> = line.split('|').map(str::trim).collect();
+                    self.time_is(s.phase, &s.from, c[0])
+                        && self.time_is(s.phase, &s.to, c[1])
+                        && shown.split('|').nth(2).map(str::trim) == Some(c[2])
+                });
         assert!(fits, "expected segments {lines:#?}\n{}", self.full());
         self
     }
@@ -436,7 +480,8 @@ impl Told {
     fn audit(&self) {
         for (i, p) in self.trajectory.pawls.iter().enumerate() {
             for w in p.events.windows(2) {
-                let order = (w[0].phase, &w[0].time, w[0].kind) < (w[1].phase, &w[1].time, w[1].kind);
+                let order =
+                    (w[0].phase, &w[0].time, w[0].kind) < (w[1].phase, &w[1].time, w[1].kind);
                 assert!(order, "order of events\n{}", self.full());
             }
             let mut phase = 0;
@@ -454,11 +499,19 @@ impl Told {
                     self.audit_segment(i, s);
                 }
             }
-            assert!(clock == self.trajectory.phases[phase].to, "end\n{}", self.full());
+            assert!(
+                clock == self.trajectory.phases[phase].to,
+                "end\n{}",
+                self.full()
+            );
         }
         let o = &self.trajectory.outcome;
         assert!(o.kind != OutcomeKind::Undecided, "{}", self.full());
-        assert!(o.time == self.trajectory.phases[o.phase].to, "{}", self.full());
+        assert!(
+            o.time == self.trajectory.phases[o.phase].to,
+            "{}",
+            self.full()
+        );
     }
 
     fn audit_segment(&self, pawl: usize, s: &snapfit::motion::Segment) {
@@ -470,13 +523,22 @@ impl Told {
         let f = |x: &Rat| (x / &size).nearest_f64().unwrap();
         let [fa, fb, fc] = [&a, &b, &c].map(f);
         let u = if a.is_zero() {
-            assert_eq!(b.sign(), h.branch, "branch of a linear curve\n{}", self.full());
+            assert_eq!(
+                b.sign(),
+                h.branch,
+                "branch of a linear curve\n{}",
+                self.full()
+            );
             -fc / fb
         } else {
             let d = f(&((b.square() - Rat::from(4) * &a * &c) / &size));
             assert!(d > -1e-12, "discriminant {d}\n{}", self.full());
             let root = f64::from(h.branch) * d.max(0.0).sqrt();
-            if root * fb > 0.0 { 2.0 * fc / (-fb - root) } else { (-fb + root) / (2.0 * fa) }
+            if root * fb > 0.0 {
+                2.0 * fc / (-fb - root)
+            } else {
+                (-fb + root) / (2.0 * fa)
+            }
         };
         let Contact::Obstacle {
             obstacle,
@@ -499,18 +561,32 @@ impl Told {
             .map(|v| &(v - &place.hinge).rotate_tan_half(&u) + &hinge)
             .collect();
         let o = &self.scene.obstacles[obstacle as usize];
-        let fixed = if ring == 0 { &o.vertices } else { &o.holes[ring as usize - 1] };
+        let fixed = if ring == 0 {
+            &o.vertices
+        } else {
+            &o.holes[ring as usize - 1]
+        };
         let edge = |v: &[Vec2], k: u32| {
             let k = k as usize;
             (v[k].clone(), v[(k + 1) % v.len()].clone())
         };
         let (at, (e0, e1)) = match kind {
-            ContactKind::B => (turned[pawl_feature as usize].clone(), edge(fixed, obstacle_feature)),
-            ContactKind::A => (fixed[obstacle_feature as usize].clone(), edge(&turned, pawl_feature)),
+            ContactKind::B => (
+                turned[pawl_feature as usize].clone(),
+                edge(fixed, obstacle_feature),
+            ),
+            ContactKind::A => (
+                fixed[obstacle_feature as usize].clone(),
+                edge(&turned, pawl_feature),
+            ),
         };
         let along = &e1 - &e0;
-        let off = (along.cross(&(&at - &e0)) / along.norm2()).nearest_f64().unwrap();
-        let place = (along.dot(&(&at - &e0)) / along.norm2()).nearest_f64().unwrap();
+        let off = (along.cross(&(&at - &e0)) / along.norm2())
+            .nearest_f64()
+            .unwrap();
+        let place = (along.dot(&(&at - &e0)) / along.norm2())
+            .nearest_f64()
+            .unwrap();
         assert!(
             off.abs() < 1e-7 && place > -1e-7 && place < 1.0 + 1e-7,
             "at {t} the contact is off by {off} at {place}\n{}",

@@ -46,7 +46,13 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
     y += 20.0;
     y = panels::draw(&mut page, &stage, &moments, [MARGIN, y, inner]);
     y += 26.0;
-    y = plot::draw(&mut page, &stage, result, &moments, [MARGIN, y, inner]);
+    y = plot::draw(
+        &mut page,
+        &stage,
+        result,
+        &moments.chosen,
+        [MARGIN, y, inner],
+    );
     page.finish(WIDTH, y + MARGIN, &result.scene, &headline(result))
 }
 

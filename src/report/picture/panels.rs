@@ -10,6 +10,7 @@ use super::stage::Stage;
 use super::svg::{CONTACT, INK, MUTED, Point, RULE, Svg, clipped};
 use crate::report::json::{EventDocument, ResultDocument};
 use crate::report::words::digits;
+use std::collections::BTreeMap;
 
 /// Most panels that are drawn.
 const MOST: usize = 16;
@@ -44,6 +45,12 @@ pub(super) struct Moment {
 /// The weight of what ends a motion.
 const GRIEF: u32 = 7;
 
+/// The instants that are drawn, and of how many.
+pub(super) struct Moments {
+    pub(super) chosen: Vec<Moment>,
+    of: usize,
+}
+
 /// How much an event deserves a panel.
 fn weight(kind: &str) -> u32 {
     match kind {
@@ -67,7 +74,7 @@ struct Group<'a> {
 }
 
 /// The instants to draw, in order, lettered.
-pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
+pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Moments {
     let mut all: Vec<(usize, &EventDocument)> = Vec::new();
     for (i, pawl) in result.pawls.iter().enumerate() {
         let drawn = pawl.events.iter().filter(|e| e.time.approx().is_finite());
@@ -98,19 +105,31 @@ pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
             }),
         }
     }
+    // The first of its kind tells more than the tenth.
+    let mut seen: BTreeMap<Vec<(usize, &str)>, i64> = BTreeMap::new();
+    let mut rank: Vec<i64> = Vec::new();
+    for g in &groups {
+        let kinds = g.events.iter().map(|(pawl, e)| (*pawl, e.kind)).collect();
+        let before = seen.entry(kinds).or_insert(0);
+        rank.push(4 * i64::from(g.weight) - 3 * *before);
+        *before += 1;
+    }
     let mut ranked: Vec<usize> = (0..groups.len())
         .filter(|&i| groups[i].weight > 0)
         .collect();
-    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].weight), i));
+    let worth = ranked.len();
+    ranked.sort_by_key(|&i| (std::cmp::Reverse(rank[i]), i));
     ranked.truncate(MOST);
     ranked.sort_unstable();
     let chosen = ranked.into_iter().enumerate();
-    chosen
-        .map(|(k, i)| {
-            let g = &groups[i];
-            moment(stage, result, letter(k), (g.phase, g.t), &g.events)
-        })
-        .collect()
+    let chosen = chosen.map(|(k, i)| {
+        let g = &groups[i];
+        moment(stage, result, letter(k), (g.phase, g.t), &g.events)
+    });
+    Moments {
+        chosen: chosen.collect(),
+        of: worth,
+    }
 }
 
 fn letter(k: usize) -> String {
@@ -286,7 +305,7 @@ fn framed(w: Window) -> Window {
     dx += margin;
     dy += margin;
     dx = dx.max(0.62 * dy);
-    dy = dy.max(dx / 1.7);
+    dy = dy.max(dx / 2.2);
     [
         c[0] - dx / 2.0,
         c[1] - dy / 2.0,
@@ -299,10 +318,10 @@ fn framed(w: Window) -> Window {
 pub(super) fn draw(
     page: &mut Svg,
     stage: &Stage,
-    moments: &[Moment],
+    moments: &Moments,
     [x, y, width]: [f64; 3],
 ) -> f64 {
-    let windows = windows(stage, moments);
+    let windows = windows(stage, &moments.chosen);
     let Some(first) = windows.first() else {
         return y;
     };
@@ -319,15 +338,15 @@ pub(super) fn draw(
         );
         return y + 20.0;
     }
-    let (columns, w) = columns(moments.len(), dx / dy, width);
+    let (columns, w) = columns(moments.chosen.len(), dx / dy, width);
     let h = w * dy / dx;
     let scale = w / dx;
-    for (i, (m, window)) in moments.iter().zip(&windows).enumerate() {
+    for (i, (m, window)) in moments.chosen.iter().zip(&windows).enumerate() {
         let px = x + (i % columns) as f64 * (w + GAP);
         let py = y + (i / columns) as f64 * (h + CAPTION);
         panel(page, stage, m, window, [px, py, w, h]);
     }
-    let rows = moments.len().div_ceil(columns);
+    let rows = moments.chosen.len().div_ceil(columns);
     let below = y + rows as f64 * (h + CAPTION);
     legend(page, stage, moments, scale, [x, below + 6.0, dx]);
     below + 22.0
@@ -344,7 +363,7 @@ fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
         let height = rows as f64 * (column(columns) / aspect + CAPTION);
         let empty = (rows * columns - count) as f64 / columns as f64;
         let blank = width - columns as f64 * (column(columns) + GAP);
-        (height - 0.5 * width).abs() + 0.3 * empty * width + 0.5 * blank
+        (height - 0.5 * width).abs() + 0.45 * empty * width + 0.5 * blank
     };
     let best = (3..=6)
         .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
@@ -459,7 +478,7 @@ fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
 }
 
 /// What the signs in the panels mean, and a scale.
-fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, dx]: [f64; 3]) {
+fn legend(page: &mut Svg, stage: &Stage, moments: &Moments, scale: f64, [x, y, dx]: [f64; 3]) {
     let mut at = x;
     let unit = nice_step(dx / 4.0);
     let bar = unit * scale;
@@ -481,7 +500,7 @@ fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, 
     page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
     at += 12.0;
     word(page, &mut at, "contact");
-    if moments.iter().any(|m| !m.left.is_empty()) {
+    if moments.chosen.iter().any(|m| !m.left.is_empty()) {
         page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
         at += 12.0;
         word(page, &mut at, "contact lost");
@@ -491,6 +510,7 @@ fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, 
     at += 12.0;
     word(page, &mut at, "hinge");
     if moments
+        .chosen
         .iter()
         .any(|m| m.poses.iter().any(|p| p.1.is_some()))
     {
@@ -507,5 +527,13 @@ fn legend(page: &mut Svg, stage: &Stage, moments: &[Moment], scale: f64, [x, y, 
             at += 17.0;
             word(page, &mut at, &fit(&pawl.name, 11.0, 90.0));
         }
+    }
+    if moments.chosen.len() < moments.of {
+        let note = format!(
+            "({} of {} instants are drawn)",
+            moments.chosen.len(),
+            moments.of
+        );
+        word(page, &mut at, &note);
     }
 }

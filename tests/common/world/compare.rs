@@ -108,7 +108,10 @@ pub fn shape(scene: &Scene, t: &Trajectory) -> Result<(), String> {
             return Err(format!("phase {k} does not follow from the plan"));
         }
         if k < last {
-            let d = p.to.exact().to_rat().ok_or("a phase ends at no rational time")?;
+            let d =
+                p.to.exact()
+                    .to_rat()
+                    .ok_or("a phase ends at no rational time")?;
             let planned = match (&scene.motions[k], before) {
                 (Motion::Reverse, Some(b)) => b.to.exact().to_rat(),
                 (
@@ -136,7 +139,11 @@ pub fn shape(scene: &Scene, t: &Trajectory) -> Result<(), String> {
             let mut at = Time::from(Rat::zero());
             for s in &segs {
                 if s.from != at || s.to <= s.from {
-                    return Err(format!("{}: a gap between segments at {}", pawl.name, ft(&at)));
+                    return Err(format!(
+                        "{}: a gap between segments at {}",
+                        pawl.name,
+                        ft(&at)
+                    ));
                 }
                 at = s.to.clone();
             }
@@ -173,7 +180,10 @@ pub fn shape(scene: &Scene, t: &Trajectory) -> Result<(), String> {
             }
             for pair in segs.windows(2) {
                 let t0 = ft(&pair[0].to);
-                if events.iter().any(|e| e.to.is_some() && e.time == pair[0].to) {
+                if events
+                    .iter()
+                    .any(|e| e.to.is_some() && e.time == pair[0].to)
+                {
                     continue;
                 }
                 let h = 1e-9 * ft(&phase.to);
@@ -225,7 +235,9 @@ fn root(scene: &Scene, t: &Trajectory, covered: &mut Covered) -> Result<(), Stri
             Motion::Translate { duration, .. } => duration.clone(),
             Motion::Reverse => None,
         };
-        let early = until && bound.is_none_or(|b| d < b) && !(last && t.outcome.kind != OutcomeKind::Completed);
+        let early = until
+            && bound.is_none_or(|b| d < b)
+            && !(last && t.outcome.kind != OutcomeKind::Completed);
         if ended || early {
             covered.collisions += 1;
             if !hits(&(&d + Rat::frac(1, 1 << 40))) {
@@ -258,9 +270,8 @@ fn at_instants(
                 continue;
             };
             let theta = theta_on(s, &at);
-            check_instant(&worlds[k], &at, s, theta).map_err(|e| {
-                format!("{} in phase {k} at {}: {e}", t.pawls[i].name, f(&at))
-            })?;
+            check_instant(&worlds[k], &at, s, theta)
+                .map_err(|e| format!("{} in phase {k} at {}: {e}", t.pawls[i].name, f(&at)))?;
             covered.instants += 1;
             covered.held += usize::from(s.sliding.is_some());
         }
@@ -363,7 +374,9 @@ fn one_phase(
             .iter()
             .any(|l| (l.t - s.0).abs() < 2.0 * tol && near(l.from, s.1) && near(l.to, s.2))
         {
-            return Err(format!("a snap {s:?} that brute force does not see: {leaps:?}"));
+            return Err(format!(
+                "a snap {s:?} that brute force does not see: {leaps:?}"
+            ));
         }
     }
     if snaps.len() != leaps.len() {

@@ -145,7 +145,10 @@ impl Follower<'_> {
         }
         let Some(&(lo, hi)) = found.first() else {
             self.out.end = Some((How::Jammed, 0.0));
-            if [1e2, 1e4, 1e6].iter().any(|k| !reach(self, k * h).is_empty()) {
+            if [1e2, 1e4, 1e6]
+                .iter()
+                .any(|k| !reach(self, k * h).is_empty())
+            {
                 self.out.doubt = Some((0.0, "a narrow start"));
             }
             return None;

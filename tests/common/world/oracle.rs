@@ -280,7 +280,10 @@ impl World {
             })
             .collect();
         let moved = Polygon::new(ring, Vec::new());
-        !self.obstacles.iter().any(|o| interiors_intersect(&moved, o))
+        !self
+            .obstacles
+            .iter()
+            .any(|o| interiors_intersect(&moved, o))
     }
 
     /// The same in doubles, where every distance leaves a margin.
@@ -305,7 +308,12 @@ impl World {
                         let e = sub(y, x);
                         cross(e, sub(z, x)) / dot(e, e).sqrt()
                     };
-                    let s = [side(q, q1, a), side(q, q1, a1), side(a, a1, q), side(a, a1, q1)];
+                    let s = [
+                        side(q, q1, a),
+                        side(q, q1, a1),
+                        side(a, a1, q),
+                        side(a, a1, q1),
+                    ];
                     let apart = |x: f64, y: f64| x.min(y) > margin || x.max(y) < -margin;
                     let cut = |x: f64, y: f64| x.min(y) < -margin && x.max(y) > margin;
                     if cut(s[0], s[1]) && cut(s[2], s[3]) {

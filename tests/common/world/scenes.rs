@@ -37,7 +37,11 @@ impl Recipe {
                 r.range(1, 4) as usize
             },
             corners: if large { 14 } else { r.range(3, 8) as usize },
-            grid: if large { 16 } else { *r.pick(&[1, 1, 1, 2, 2, 4, 7]) },
+            grid: if large {
+                16
+            } else {
+                *r.pick(&[1, 1, 1, 2, 2, 4, 7])
+            },
             friction: r.chance(50),
             limits: r.chance(15),
             root: r.chance(15),
@@ -259,8 +263,12 @@ pub fn shrink(scene: &Scene, fails: &dyn Fn(&Scene) -> bool) -> Scene {
             && !s.pawls.is_empty()
             && !s.motions.is_empty()
             && s.motions[0] != Motion::Reverse
-            && s.obstacles.iter().all(|o| o.vertices.len() > 2 && defects(&polygon(o)).is_empty())
-            && s.pawls.iter().all(|p| p.vertices.len() > 2 && proper(&p.vertices))
+            && s.obstacles
+                .iter()
+                .all(|o| o.vertices.len() > 2 && defects(&polygon(o)).is_empty())
+            && s.pawls
+                .iter()
+                .all(|p| p.vertices.len() > 2 && proper(&p.vertices))
             && starts_free(s)
     };
     loop {
@@ -307,7 +315,9 @@ pub fn shrink(scene: &Scene, fails: &dyn Fn(&Scene) -> bool) -> Scene {
                 with(&|s| drop(s.obstacles[i].holes.remove(k)));
             }
         }
-        let smaller = tries.into_iter().find(|s| *s != best && sound(s) && fails(s));
+        let smaller = tries
+            .into_iter()
+            .find(|s| *s != best && sound(s) && fails(s));
         match smaller {
             Some(s) => best = s,
             None => return best,
