@@ -1,6 +1,8 @@
 //! What must not change, or change in a known way, when a scene is written or placed differently.
 //! Outcomes, kinds, times and orientations are compared exactly.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 #[path = "common/world/mod.rs"]
 mod world;
@@ -150,7 +152,7 @@ fn clock(t: &Trajectory, phase: usize, time: &Time, factor: &Rat) -> Algebraic {
 }
 
 /// An event as the comparison sees it.
-fn mark(t: &Trajectory, e: &Event, c: &Change, change: bool) -> String {
+fn mark(e: &Event, c: &Change, change: bool) -> String {
     let mut contacts = e.contacts.clone();
     if change && c.mirror {
         for k in &mut contacts {
@@ -166,7 +168,6 @@ fn mark(t: &Trajectory, e: &Event, c: &Change, change: bool) -> String {
         String::new()
     };
     let phase = if c.phases { e.phase } else { 0 };
-    let _ = t;
     format!("{:?} in {phase} {contacts}", e.kind)
 }
 
@@ -212,8 +213,8 @@ fn same(a: &Trajectory, b: &Trajectory, c: &Change) -> Result<(), String> {
     }
     for p in &a.pawls {
         let (e, g) = (events(a, &p.name, c), events(b, &p.name, c));
-        let list = |t, l: &[&Event], ch| l.iter().map(|e| mark(t, e, c, ch)).collect::<Vec<_>>();
-        let (le, lg) = (list(a, &e, true), list(b, &g, false));
+        let list = |l: &[&Event], ch| l.iter().map(|e| mark(e, c, ch)).collect::<Vec<_>>();
+        let (le, lg) = (list(&e, true), list(&g, false));
         if le != lg {
             return Err(format!("{}: events {le:#?}, then {lg:#?}", p.name));
         }
@@ -239,12 +240,6 @@ fn same(a: &Trajectory, b: &Trajectory, c: &Change) -> Result<(), String> {
 fn agree(s: &Scene, changed: &Scene, c: &Change) -> Result<(), TestCaseError> {
     let told = |e: String| {
         TestCaseError::fail(format!("{e}\n── {}\n── {}", s.to_toml(), changed.to_toml()))
-    };
-    let told = |e: String| {
-        if e.starts_with("panic") && std::env::var("TEST_LENIENT").is_ok() {
-            return TestCaseError::reject(e);
-        }
-        told(e)
     };
     let a = engine(s).map_err(told)?;
     let b = engine(changed).map_err(told)?;
@@ -433,6 +428,8 @@ proptest! {
         prop_assume!(a.outcome.kind == OutcomeKind::Completed && !leap);
         s.motions.push(Motion::Reverse);
         let b = engine(&s).map_err(TestCaseError::fail)?;
+        // A release at which the interval opens both ways is, run backwards, a bifurcation.
+        prop_assume!(b.outcome.kind != OutcomeKind::Bifurcated);
         prop_assert_eq!(b.outcome.kind, OutcomeKind::Completed, "{}", s.to_toml());
         let d = b.phases[1].from.clone();
         for p in &b.pawls {

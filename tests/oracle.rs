@@ -1,5 +1,7 @@
 //! The engine against an oracle of brute force that shares no approach with it.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 #[path = "common/world/mod.rs"]
 mod world;

@@ -1,6 +1,8 @@
 //! Many random scenes: no panic, no hang, no undecided verdict, and a trajectory that hangs
 //! together.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 #[path = "common/world/mod.rs"]
 mod world;

@@ -55,6 +55,8 @@ struct State {
     side: i32,
     /// Whether rest was well inside the interval.
     roomy: bool,
+    /// The greatest width so far.
+    widest: f64,
 }
 
 pub struct Follower<'a> {
@@ -255,6 +257,7 @@ impl Follower<'_> {
             held,
             side,
             roomy: lo < -BLUR && hi > BLUR,
+            widest: hi - lo,
         }
     }
 
@@ -333,8 +336,7 @@ impl Follower<'_> {
             };
             if smooth {
                 let n = next.into_iter().next().unwrap();
-                self.out.path.push((n.t, n.theta));
-                return Step::Done(n);
+                return self.accept(&s, n);
             }
             return match self.step(s, dt / 2.0) {
                 Step::Done(m) => self.step(m, dt / 2.0),
@@ -401,6 +403,19 @@ impl Follower<'_> {
                 }
             }
         }
+        self.out.path.pop();
+        self.accept(&s, n)
+    }
+
+    /// Takes a step, unless the interval closed to a point on the way as far as doubles can tell.
+    fn accept(&mut self, s: &State, mut n: State) -> Step {
+        let (was, is) = (s.hi - s.lo, n.hi - n.lo);
+        if was < 4.0 * BLUR && s.widest > 100.0 * BLUR && is > was {
+            self.out.doubt = Some((s.t, "a pinch"));
+            return Step::Over;
+        }
+        n.widest = is.max(s.widest);
+        self.out.path.push((n.t, n.theta));
         Step::Done(n)
     }
 }
