@@ -34,7 +34,10 @@ fn value(r: &Rat) -> f64 {
 
 /// θ on a stretch at time t, from its curve in doubles.
 fn theta(run: &Trajectory, s: &Stretch, t: f64) -> f64 {
-    let slide = run.pawls[s.pawl].segments[s.segment].sliding.as_ref().unwrap();
+    let slide = run.pawls[s.pawl].segments[s.segment]
+        .sliding
+        .as_ref()
+        .unwrap();
     let f = |k: usize| {
         let [p, q] = [&slide.p[k], &slide.q[k]].map(|i| value(&Rat::from(i.clone())));
         p + t * q
@@ -75,7 +78,14 @@ fn balance(scene: &Scene, run: &Trajectory, s: &Stretch, t: f64, speed: f64) -> 
         let len = d[0].hypot(d[1]) * area.signum();
         (a, [d[1] / len, -d[0] / len])
     };
-    let Contact::Obstacle { obstacle, kind, obstacle_feature, pawl_feature, .. } = s.contact else {
+    let Contact::Obstacle {
+        obstacle,
+        kind,
+        obstacle_feature,
+        pawl_feature,
+        ..
+    } = s.contact
+    else {
         return 0.0;
     };
     let body: Vec<_> = pawl.vertices.iter().map(|q| q - &pawl.hinge).collect();
@@ -94,7 +104,10 @@ fn balance(scene: &Scene, run: &Trajectory, s: &Stretch, t: f64, speed: f64) -> 
     let slides = [v[0] - speed * r[1], v[1] + speed * r[0]];
     let along = (slides[0] * side[0] + slides[1] * side[1]).signum();
     let mu = scene.friction.as_ref().map_or(0.0, value);
-    let f = [push[0] - mu * along * side[0], push[1] - mu * along * side[1]];
+    let f = [
+        push[0] - mu * along * side[0],
+        push[1] - mu * along * side[1],
+    ];
     let k = value(pawl.stiffness.as_ref().unwrap());
     (k * th / (r[0] * f[1] - r[1] * f[0])).abs() * (1.0 + mu * mu).sqrt()
 }
@@ -127,13 +140,19 @@ fn peaks_hold_against_dense_sampling() {
                 let Peak::Within(lo, hi) = torque(&st, k, 40).peak else {
                     panic!("a torque is finite");
                 };
-                assert!((twist - value(&lo)).abs() <= 1e-6 * (1.0 + value(&hi)), "{name}");
+                assert!(
+                    (twist - value(&lo)).abs() <= 1e-6 * (1.0 + value(&hi)),
+                    "{name}"
+                );
                 match &peaked.peak {
                     Peak::Unbounded => assert!(best > 1.0, "{name} {st:?} {best}"),
                     Peak::Within(lo, hi) => {
                         checked += 1;
                         inside += i32::from(matches!(peaked.when, Instant::Between(..)));
-                        assert!(best <= value(hi) * (1.0 + 1e-7), "{name} {st:?} {best} {hi}");
+                        assert!(
+                            best <= value(hi) * (1.0 + 1e-7),
+                            "{name} {st:?} {best} {hi}"
+                        );
                         assert!(value(lo) <= best * 1.01 + 1e-9, "{name} {st:?} {best} {lo}");
                         assert!((hi - lo) * Rat::from(2).pow(40) <= *lo, "{name}: narrow");
                     }

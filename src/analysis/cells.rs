@@ -146,18 +146,31 @@ impl Field {
                 hinge: point(&(&pawl.hinge + &start.offset)),
                 reach: reach2.unwrap_or_default().interval().sqrt().hi,
                 start: (start.angles[i].half_turn, start.angles[i].x.interval()),
-                limits: pawl.limits.as_ref().map(|(a, b)| [a.interval(), b.interval()]),
+                limits: pawl
+                    .limits
+                    .as_ref()
+                    .map(|(a, b)| [a.interval(), b.interval()]),
                 friction: mu.interval(),
                 push,
             }
         };
         Field {
-            rings: ground.obstacles.iter().flat_map(|o| &o.rings).map(sides).collect(),
+            rings: ground
+                .obstacles
+                .iter()
+                .flat_map(|o| &o.rings)
+                .map(sides)
+                .collect(),
             root: scene.root.as_ref().map(|r| {
                 let moved = r.vertices.iter().map(|p| p + &start.offset).collect();
                 sides(&Ring::new(moved, false))
             }),
-            pawls: ground.shapes.iter().enumerate().map(|(i, s)| body(i, s)).collect(),
+            pawls: ground
+                .shapes
+                .iter()
+                .enumerate()
+                .map(|(i, s)| body(i, s))
+                .collect(),
         }
     }
 
@@ -184,7 +197,11 @@ impl Field {
         for slab in Slabs::new(grain) {
             let d = [slab * w[0], slab * w[1]];
             let still = [Interval::point(1.0), Interval::point(0.0)];
-            if self.rings.iter().any(|ring| crosses(root, ring, &d, &still)) {
+            if self
+                .rings
+                .iter()
+                .any(|ring| crosses(root, ring, &d, &still))
+            {
                 return slab.lo;
             }
         }
@@ -200,9 +217,7 @@ impl Field {
         root: f64,
     ) -> bool {
         let per_half_turn = (3.2 * body.reach / grain.step).clamp(15.0, 4000.0) as i64 | 1;
-        let grid = Grid {
-            n: per_half_turn,
-        };
+        let grid = Grid { n: per_half_turn };
         let mut live = grid.cells_of(body.start.0, body.start.1);
         let mut first = true;
         for slab in Slabs::new(grain) {
@@ -266,9 +281,7 @@ fn crosses(body: &[Side], ring: &[Side], shift: &Point, turn: &Point) -> bool {
         let q = minus(&r.at, shift);
         dot(&b.normal, &q) * turn[0] + cross(&b.normal, &q) * turn[1] - b.offset
     };
-    let apart = |a: Interval, b: Interval| {
-        positive(a) && negative(b) || negative(a) && positive(b)
-    };
+    let apart = |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
     ring.iter().any(|r| {
         body.iter().any(|b| {
             apart(vertex(b, r), vertex(&body[b.next], r))
@@ -321,11 +334,12 @@ impl Grid {
     }
     fn cells_of(self, half_turn: i64, x: Interval) -> Vec<i64> {
         let base = half_turn * self.n - (self.n - 1) / 2;
-        (base - 1..=base + self.n).filter(|&c| {
-            let own = self.half_turn(c) == half_turn;
-            own && self.x(c).meets(&x) || !own && (x.hi >= 1.0 || x.lo <= -1.0)
-        })
-        .collect()
+        (base - 1..=base + self.n)
+            .filter(|&c| {
+                let own = self.half_turn(c) == half_turn;
+                own && self.x(c).meets(&x) || !own && (x.hi >= 1.0 || x.lo <= -1.0)
+            })
+            .collect()
     }
     /// (cos θ, sin θ).
     fn turn(self, cell: i64) -> Point {
@@ -484,9 +498,8 @@ impl View<'_> {
             let moved = dot(&b.normal, &w) * turn[0] + cross(&b.normal, &w) * turn[1];
             still - slab * moved - b.offset
         };
-        let apart = |a: Interval, b: Interval| {
-            positive(a) && negative(b) || negative(a) && positive(b)
-        };
+        let apart =
+            |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
         let side = cell.signum();
         let angle = self.grid.least_angle(cell);
         for (ring, near) in self.field.rings.iter().zip(&self.near) {
@@ -526,7 +539,15 @@ impl View<'_> {
     }
 
     /// Whether a pawl vertex may be held by an obstacle edge in the cell.
-    fn type_b(&self, b: &Side, r: &Side, turn: &Point, shift: &Point, side: i64, angle: f64) -> bool {
+    fn type_b(
+        &self,
+        b: &Side,
+        r: &Side,
+        turn: &Point,
+        shift: &Point,
+        side: i64,
+        angle: f64,
+    ) -> bool {
         let pawl = &self.body.sides;
         let turned = |v: &Point, n: &Point| dot(v, n) * turn[0] + cross(v, n) * turn[1];
         let behind = minus(&pawl[b.prev].at, &b.at);

@@ -43,7 +43,9 @@ impl Verdict {
     /// The verdict that a word means.
     pub fn from_name(name: &str) -> Option<Verdict> {
         use Verdict::{Force, Friction, Kinematic, None as Free};
-        [Free, Force, Friction, Kinematic].into_iter().find(|v| v.name() == name)
+        [Free, Force, Friction, Kinematic]
+            .into_iter()
+            .find(|v| v.name() == name)
     }
 }
 
@@ -154,7 +156,10 @@ pub fn relative(scene: &Scene, ask: &Ask) -> Result<Relative, PlanError> {
 /// locked anyway ask for none; one that no μ locks spoils it; none at all ask for no friction.
 fn family_friction(directions: &[Direction]) -> Option<Algebraic> {
     let mut worst: Option<Algebraic> = None;
-    for d in directions.iter().filter(|d| d.verdict != Verdict::Kinematic) {
+    for d in directions
+        .iter()
+        .filter(|d| d.verdict != Verdict::Kinematic)
+    {
         let (mu, _) = d.critical.clone()?;
         worst = Some(match worst {
             Some(w) if w >= mu => w,

@@ -106,6 +106,7 @@ fn root(x: &Algebraic) -> Algebraic {
     x.root_over(&square, &Poly::from_i64(&[1]), &mut |bits| {
         let (lo, hi) = x.enclosure(2 * bits);
         let fix = super::fix::Bits(u64::from(2 * bits)).hull(&lo, &hi);
-        fix.sqrt().map_or_else(|| (Rat::zero(), hi), |r| (r.lo(), r.hi()))
+        fix.sqrt()
+            .map_or_else(|| (Rat::zero(), hi), |r| (r.lo(), r.hi()))
     })
 }

@@ -186,7 +186,11 @@ fn stop(scene: &Scene, run: &Trajectory) -> StopDocument {
 impl ClassifyDocument {
     /// Whether a limit kept the question open: of the family, or of part of the circle.
     pub fn undecided(&self) -> bool {
-        let open = self.class.is_none() && self.directions.iter().any(|d| d.outcome.kind == "undecided");
+        let open = self.class.is_none()
+            && self
+                .directions
+                .iter()
+                .any(|d| d.outcome.kind == "undecided");
         open || self.undecided_width.is_some_and(|w| w > 0.0)
     }
 }
@@ -229,9 +233,21 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
             not_modelled.push(without);
         }
     };
-    place(rubbed, "Coulomb friction, one coefficient throughout", "friction");
-    place(pushed, "linear torsional springs; the force limit bounds each contact force", "stiffness and forces");
-    place(scene.root.is_some(), "the root blocks where it collides", "root collision");
+    place(
+        rubbed,
+        "Coulomb friction, one coefficient throughout",
+        "friction",
+    );
+    place(
+        pushed,
+        "linear torsional springs; the force limit bounds each contact force",
+        "stiffness and forces",
+    );
+    place(
+        scene.root.is_some(),
+        "the root blocks where it collides",
+        "root collision",
+    );
     ClassifyDocument {
         schema: "snapfit.classify/1",
         scene: scene.name.clone(),
@@ -244,7 +260,11 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
         critical_friction_forward: family.critical_forward.as_ref().map(Num::of),
         assumed,
         not_modelled,
-        directions: family.directions.iter().map(|d| direction(scene, d)).collect(),
+        directions: family
+            .directions
+            .iter()
+            .map(|d| direction(scene, d))
+            .collect(),
         cover: circle.map_or_else(Vec::new, |t| {
             t.cover
                 .iter()
@@ -268,7 +288,13 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
     let out = d.run.outcome.kind == OutcomeKind::Completed;
     let plan = out.then(|| {
         let lasted = d.run.outcome.time.interval().hi;
-        let lasted = d.run.outcome.time.as_rat().cloned().unwrap_or_else(|| Rat::from_f64(lasted));
+        let lasted = d
+            .run
+            .outcome
+            .time
+            .as_rat()
+            .cloned()
+            .unwrap_or_else(|| Rat::from_f64(lasted));
         format!(
             "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{lasted}\"\n",
             d.velocity.x, d.velocity.y
@@ -296,12 +322,19 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
     let way = format!("({}, {})", weakest.velocity.x, weakest.velocity.y);
     let mut text = match weakest.verdict {
         Verdict::None if weakest.open => {
-            format!("along {way} the motion ends {}: not proven blocked", weakest.run.outcome.kind.name())
+            format!(
+                "along {way} the motion ends {}: not proven blocked",
+                weakest.run.outcome.kind.name()
+            )
         }
         Verdict::None => format!("along {way} it gets out"),
         Verdict::Force => format!("along {way} it gets out only past the force limit"),
         _ => {
-            let by = weakest.run.outcome.pawl.map(|i| scene.pawls[i].name.as_str());
+            let by = weakest
+                .run
+                .outcome
+                .pawl
+                .map(|i| scene.pawls[i].name.as_str());
             let end = weakest.run.outcome.kind.name();
             format!("along {way} it ends {end}, by {}", by.unwrap_or("the root"))
         }
@@ -468,7 +501,10 @@ pub fn forces(scene: &Scene, digits: u32, ask: &Ask) -> Result<ForcesDocument, P
                 None => (push, segment.phase),
                 Some((b, phase)) => {
                     let first = exceeds(&b.peak, &push.peak);
-                    (higher(Some(b), push), if first { phase } else { segment.phase })
+                    (
+                        higher(Some(b), push),
+                        if first { phase } else { segment.phase },
+                    )
                 }
             });
         }
@@ -498,7 +534,11 @@ pub fn forces(scene: &Scene, digits: u32, ask: &Ask) -> Result<ForcesDocument, P
             None => (peak, push.peak, turned),
             Some((old, force, torque)) => {
                 let first = exceeds(&force, &push.peak);
-                (if first { old } else { peak }, force.max(push.peak), torque.max(turned))
+                (
+                    if first { old } else { peak },
+                    force.max(push.peak),
+                    torque.max(turned),
+                )
             }
         });
     }

@@ -41,7 +41,11 @@ impl Start {
         let angles = plan
             .pawls
             .iter()
-            .map(|p| p.events.last().map_or_else(Angle::rest, |e| e.angle.clone()))
+            .map(|p| {
+                p.events
+                    .last()
+                    .map_or_else(Angle::rest, |e| e.angle.clone())
+            })
             .collect();
         Some(Start {
             offset: &last.offset + &last.velocity.scale(lasted),

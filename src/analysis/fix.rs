@@ -60,7 +60,10 @@ impl Bits {
     /// arctan(1/n) for n ≥ 2, by its alternating series.
     fn atan_inverse(self, n: i64) -> Fix {
         let (n2, guard) = (Int::from(n * n), 16);
-        let mut power = Int::one().shl(self.0 + guard).div_rem_floor(&Int::from(n)).0;
+        let mut power = Int::one()
+            .shl(self.0 + guard)
+            .div_rem_floor(&Int::from(n))
+            .0;
         let (mut sum, mut k) = (Int::zero(), 0i64);
         while !power.is_zero() {
             let term = power.div_rem_floor(&Int::from(2 * k + 1)).0;
@@ -246,7 +249,11 @@ fn atan_point(x: &Fix) -> Fix {
         let Some(term) = power.div(&b.int(2 * k + 1)) else {
             break;
         };
-        sum = if k % 2 == 0 { sum.add(&term) } else { sum.sub(&term) };
+        sum = if k % 2 == 0 {
+            sum.add(&term)
+        } else {
+            sum.sub(&term)
+        };
         power = power.mul(&y2);
         k += 1;
         if power.hi <= Int::one() {
@@ -282,7 +289,10 @@ mod tests {
         // arctan is odd, and four times arctan 1 is π.
         let one = b.int(1).atan().mul(&b.int(4));
         assert!(one.lo() <= b.pi().hi() && b.pi().lo() <= one.hi());
-        let third = b.rat(&Rat::frac(-1, 3)).atan().add(&b.rat(&Rat::frac(1, 3)).atan());
+        let third = b
+            .rat(&Rat::frac(-1, 3))
+            .atan()
+            .add(&b.rat(&Rat::frac(1, 3)).atan());
         assert_eq!(third.sign(), None);
     }
 

@@ -92,7 +92,9 @@ pub fn torque(s: &Stretch, stiffness: &Rat, goal: u32) -> Peaked {
     loop {
         let b = Bits(n);
         let (lo, hi) = x.enclosure(n as u32);
-        let v = theta(&b.hull(&lo, &hi), s.half_turn, b).abs().mul(&b.rat(stiffness));
+        let v = theta(&b.hull(&lo, &hi), s.half_turn, b)
+            .abs()
+            .mul(&b.rat(stiffness));
         let (lo, hi) = (v.lo(), v.hi());
         if narrow(&lo, &hi, goal) || n > 1 << 16 {
             return Peaked {
@@ -341,7 +343,9 @@ impl Part {
     /// |T| over an enclosed position, and T′ with the sign of |T|.
     fn lever(&self, b: Bits, x: &Fix) -> (Fix, Fix) {
         let two = b.int(2);
-        let slope = two.div(&b.int(1).add(&x.mul(x))).unwrap_or_else(|| b.int(2));
+        let slope = two
+            .div(&b.int(1).add(&x.mul(x)))
+            .unwrap_or_else(|| b.int(2));
         if !self.by_x {
             let t = theta(x, self.half_turn, b);
             return match t.sign() {

@@ -69,7 +69,13 @@ impl QPoly {
     /// Num and den as integer polynomials with the quotient unchanged.
     pub(super) fn pair(num: &QPoly, den: &QPoly) -> (Poly, Poly) {
         let n = num.0.len();
-        let all: Vec<Rat> = num.0.iter().chain(&den.0).cloned().chain([Rat::one()]).collect();
+        let all: Vec<Rat> = num
+            .0
+            .iter()
+            .chain(&den.0)
+            .cloned()
+            .chain([Rat::one()])
+            .collect();
         let p = Poly::from_rats(&all);
         let part = |r: std::ops::Range<usize>| Poly::new(r.map(|i| p.coeff(i)).collect());
         (part(0..n), part(n..n + den.0.len()))

@@ -111,9 +111,8 @@ pub fn stretches(
                 q: &sliding.q,
                 branch: sliding.branch,
             };
-            let from = known(pawl, segment, false).unwrap_or_else(|| {
-                curve.angle(segment, &segment.from, segment.winding[0])
-            });
+            let from = known(pawl, segment, false)
+                .unwrap_or_else(|| curve.angle(segment, &segment.from, segment.winding[0]));
             let to = known(pawl, segment, true)
                 .unwrap_or_else(|| curve.angle(segment, &segment.to, segment.winding[1]));
             let place = Stretch {
@@ -256,7 +255,11 @@ impl World<'_> {
                     .unwrap_or_else(|| place.t[1].clone())
             };
             if t < until {
-                let (x0, x1) = if step == 0 { (x.clone(), x.clone()) } else { (x, end) };
+                let (x0, x1) = if step == 0 {
+                    (x.clone(), x.clone())
+                } else {
+                    (x, end)
+                };
                 let mut s = place.clone();
                 s.half_turn = half;
                 s.t = [t, until.clone()];
@@ -280,7 +283,10 @@ impl World<'_> {
 
     /// P and Q without their common factor, their quotient unchanged.
     fn reduced(&self, chart: Chart) -> (QPoly, QPoly) {
-        let (p, q) = (Curve::in_chart(self.p, chart), Curve::in_chart(self.q, chart));
+        let (p, q) = (
+            Curve::in_chart(self.p, chart),
+            Curve::in_chart(self.q, chart),
+        );
         let (whole_p, whole_q) = (QPoly::of(&p), QPoly::of(&q));
         if q.is_zero() || p.is_zero() {
             return (whole_p, whole_q);

@@ -43,7 +43,10 @@ impl Arc {
     }
     /// Both ends as unit vectors.
     pub fn ends(&self) -> [Vec2; 2] {
-        [Arc::unit(self.quarter, &self.from), Arc::unit(self.quarter, &self.to)]
+        [
+            Arc::unit(self.quarter, &self.from),
+            Arc::unit(self.quarter, &self.to),
+        ]
     }
     /// Its angle in radians, rounded up: 2(arctan to − arctan from) ≤ 2(to − from).
     pub fn width(&self) -> f64 {
@@ -111,7 +114,10 @@ const DEPTH: u32 = 16;
 /// Decides every direction. `known` are verdicts already met on single directions.
 pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Total {
     let scene = ground.scene;
-    let asked = scene.classify.as_ref().and_then(|c| c.escape_distance.clone());
+    let asked = scene
+        .classify
+        .as_ref()
+        .and_then(|c| c.escape_distance.clone());
     let distance = asked.unwrap_or_else(|| clear_distance(scene, start));
     let mut search = Search {
         ground,
@@ -260,4 +266,3 @@ impl Search<'_> {
         })
     }
 }
-

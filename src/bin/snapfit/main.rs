@@ -9,8 +9,8 @@ mod output;
 mod progress;
 
 use args::{
-    Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render, Simulate,
-    Verb,
+    Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
+    Simulate, Verb,
 };
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -89,7 +89,9 @@ fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
 fn ask(engine: &Engine) -> Result<Ask, Failure> {
     provenance(engine)?;
     Ok(Ask {
-        deadline: engine.time_limit.and_then(|limit| Instant::now().checked_add(limit)),
+        deadline: engine
+            .time_limit
+            .and_then(|limit| Instant::now().checked_add(limit)),
         critical: true,
     })
 }
