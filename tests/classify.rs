@@ -55,9 +55,9 @@ fn the_handbook_pair_parts() {
     let run = &vertex.directions[0].run;
     assert_eq!(run.outcome.kind, OutcomeKind::Stuck);
     let angle = &run.pawls[0].events.last().unwrap().angle;
-    // tan θ = 2x/(1 − x²) = −1/21.
+    // tan θ = 2x/(1 − x²) = −1/21, so x² − 42x − 1 = 0.
     assert_eq!(angle.half_turn, 0);
-    assert_eq!(angle.x.sign_of(&Poly::from_i64(&[-1, 42, 1])), 0);
+    assert_eq!(angle.x.sign_of(&Poly::from_i64(&[-1, -42, 1])), 0);
     assert!(angle.x.sign() < 0);
     // The other one locks from μ·tan α′ = 1 on: the handbook's asymptote, at θ = 0, exactly.
     let edge = decided(&scene("examples/handbook-edge.toml"));
@@ -68,6 +68,7 @@ fn the_handbook_pair_parts() {
 #[test]
 fn critical_friction_is_critical() {
     let eps = Rat::from(2).pow(100).recip();
+    let mut checked = 0;
     for (name, class) in FAMILIES {
         if class == Verdict::Kinematic {
             continue;
@@ -75,7 +76,11 @@ fn critical_friction_is_critical() {
         let mut s = scene(name);
         s.friction = None;
         let free = decided(&s);
-        let critical = free.critical.unwrap();
+        let Some(critical) = free.critical else {
+            // Nothing is met on the way out.
+            continue;
+        };
+        checked += 1;
         let (lo, hi) = critical.enclosure(120);
         for (mu, locks) in [(&lo - &eps, false), (&hi + &eps, true)] {
             s.friction = Some(mu);
@@ -105,6 +110,7 @@ fn critical_friction_is_critical() {
             }
         }
     }
+    assert!(checked >= 5);
 }
 
 /// Kinematic and friction verdicts do not depend on stiffness, kinematic ones not on μ either;
