@@ -1,9 +1,10 @@
 //! A static index of boxes: which pieces of arcs may meet this one?
 //!
-//! The idea (sort-tile-recursive packing, Leutenegger, Lopez & Edgington 1997): sort the boxes by u into
-//! slabs, every slab by t, and pack neighbours into nodes of eight. It adapts to any spread of the arcs,
-//! because only ranks matter, and takes linear memory whatever they look like: there is no cell
-//! size to choose.
+//! The idea (a packed tree, as by Leutenegger, Lopez & Edgington 1997): halve the boxes along the axis on
+//! which they are spread widest compared with their own size, again and again, and pack neighbours into
+//! nodes of eight. It adapts to any spread of the arcs, because only ranks matter, and takes linear memory
+//! whatever they look like: there is no cell size to choose. (Slabs by u, each sorted by t, made rays
+//! cost √n where obstacles are strung along t.)
 
 /// A box of doubles that encloses a piece: [u from, u to, t from, t to].
 pub(crate) type Bounds = [f64; 4];
@@ -50,16 +51,7 @@ impl Tree {
     /// Packs the entries. O(n log n).
     pub(crate) fn new(mut entries: Vec<(Bounds, u32)>) -> Tree {
         let n = entries.len();
-        if n > FAN {
-            let mid = |lo: f64, hi: f64| lo * 0.5 + hi * 0.5;
-            entries.sort_unstable_by(|(a, _), (b, _)| mid(a[0], a[1]).total_cmp(&mid(b[0], b[1])));
-            let leaves = n.div_ceil(FAN);
-            let slabs = (leaves as f64).sqrt().ceil() as usize;
-            let size = leaves.div_ceil(slabs.max(1)) * FAN;
-            for slab in entries.chunks_mut(size) {
-                slab.sort_unstable_by(|(a, _), (b, _)| mid(a[2], a[3]).total_cmp(&mid(b[2], b[3])));
-            }
-        }
+        arrange(&mut entries);
         let mut boxes: Vec<Bounds> = entries.iter().map(|e| e.0).collect();
         let ids = entries.into_iter().map(|e| e.1).collect();
         let mut levels = vec![0, n];
@@ -112,6 +104,42 @@ impl Tree {
             }
         }
     }
+}
+
+/// Orders the entries so that every aligned run of 8, 64, 512, … lies close together.
+fn arrange(entries: &mut [(Bounds, u32)]) {
+    let n = entries.len();
+    if n <= FAN {
+        return;
+    }
+    let mut child = FAN;
+    while child * FAN < n {
+        child *= FAN;
+    }
+    let far = f64::MAX / 8.0;
+    let side = |b: &Bounds, axis: usize| (b[axis].max(-far), b[axis + 1].min(far));
+    let middle = |b: &Bounds, axis: usize| {
+        let (lo, hi) = side(b, axis);
+        lo * 0.5 + hi * 0.5
+    };
+    // Spread of the middles over the sum of the sizes.
+    let score = |axis: usize| {
+        let (mut lo, mut hi, mut size) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for (b, _) in &*entries {
+            let (from, to) = side(b, axis);
+            let m = middle(b, axis);
+            lo = lo.min(m);
+            hi = hi.max(m);
+            size += (to - from) / n as f64;
+        }
+        (hi - lo) / (size + f64::MIN_POSITIVE)
+    };
+    let axis = if score(2) > score(0) { 2 } else { 0 };
+    let cut = n.div_ceil(child) / 2 * child;
+    entries.select_nth_unstable_by(cut, |(a, _), (b, _)| middle(a, axis).total_cmp(&middle(b, axis)));
+    let (low, high) = entries.split_at_mut(cut);
+    arrange(low);
+    arrange(high);
 }
 
 #[cfg(test)]
