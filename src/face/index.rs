@@ -136,7 +136,9 @@ fn arrange(entries: &mut [(Bounds, u32)]) {
     };
     let axis = if score(2) > score(0) { 2 } else { 0 };
     let cut = n.div_ceil(child) / 2 * child;
-    entries.select_nth_unstable_by(cut, |(a, _), (b, _)| middle(a, axis).total_cmp(&middle(b, axis)));
+    entries.select_nth_unstable_by(cut, |(a, _), (b, _)| {
+        middle(a, axis).total_cmp(&middle(b, axis))
+    });
     let (low, high) = entries.split_at_mut(cut);
     arrange(low);
     arrange(high);
