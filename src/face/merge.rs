@@ -5,7 +5,8 @@
 //! holds z, and it is also the face of z among the *edges* of ∂R and ∂B alone, because R, connected and
 //! clear of ∂R, is the face of z in the arrangement of ∂R. So the merge is again a walk, on
 //! edges instead of arcs, and hidden arcs are never seen again. It follows the component of z only:
-//! no other component of R ∩ B is touched, though there may be quadratically many crossings in all.
+//! no other component of R ∩ B is touched, though there may be quadratically many crossings in all. Nothing in
+//! the argument is special to two faces; eight at a time make a third of the levels.
 //!
 //! Edges stay cut at every vertex, also where an arc ends on them from outside. Nothing more is needed for
 //! the count of the whole arrangement: let p be a point of the final face's boundary where arcs meet. The arcs
@@ -58,35 +59,25 @@ pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, 
     trace(k, &items, &comps, ends, start)
 }
 
-/// The face of two faces' edges.
-fn merge(k: &mut Kernel, red: Face, blue: Face, start: Point) -> Result<Face, OnArc> {
-    if red.items.is_empty() {
-        return Ok(blue);
+/// The face of several faces' edges, each face a colour.
+fn merge(k: &mut Kernel, faces: Vec<Face>, start: Point) -> Result<Face, OnArc> {
+    let (mut items, mut comps, mut points) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, face) in faces.into_iter().enumerate() {
+        let (v, c, n) = (points.len() as u32, comps.len() as u32, items.len() as u32);
+        let color = i as u8 + 1;
+        items.extend(face.items.into_iter().map(|i| Item {
+            vl: i.vl + v,
+            vr: i.vr + v,
+            comp: i.comp + c,
+            color,
+            ..i
+        }));
+        comps.extend(face.comps.into_iter().map(|b| Comp {
+            vertex: b.vertex + v,
+            item: b.item + n,
+        }));
+        points.extend(face.points);
     }
-    if blue.items.is_empty() {
-        return Ok(red);
-    }
-    let (v, c, n) = (
-        red.points.len() as u32,
-        red.comps.len() as u32,
-        red.items.len() as u32,
-    );
-    let mut items = red.items;
-    items.iter_mut().for_each(|i| i.color = 1);
-    items.extend(blue.items.into_iter().map(|i| Item {
-        vl: i.vl + v,
-        vr: i.vr + v,
-        comp: i.comp + c,
-        color: 2,
-        ..i
-    }));
-    let mut comps = red.comps;
-    comps.extend(blue.comps.into_iter().map(|b| Comp {
-        vertex: b.vertex + v,
-        item: b.item + n,
-    }));
-    let mut points = red.points;
-    points.extend(blue.points);
     trace(k, &items, &comps, points, start)
 }
 
@@ -105,6 +96,10 @@ fn trace(
     check(&face, k);
     Ok(face)
 }
+
+/// How many faces one merge takes: each level of the tree walks along all edges that are left, so fewer levels
+/// are faster as long as few pairs of edges are near each other.
+const WAYS: usize = 8;
 
 /// How the arcs are dealt to the leaves: a fixed seed, so that every run is the same.
 const SEED: u64 = 0x5eed_5eed_5eed_5eed;
@@ -138,11 +133,13 @@ fn conquer(
     if arcs.len() <= leaf {
         return walk(k, arcs, start);
     }
-    let (red, blue) = arcs.split_at(arcs.len() / 2);
-    let red = conquer(k, red, start, leaf, merges)?;
-    let blue = conquer(k, blue, start, leaf, merges)?;
+    let ways = arcs.len().div_ceil(leaf).min(WAYS);
+    let parts = arcs.chunks(arcs.len().div_ceil(ways));
+    let faces = parts
+        .map(|p| conquer(k, p, start, leaf, merges))
+        .collect::<Result<_, _>>()?;
     *merges += 1;
-    merge(k, red, blue, start)
+    merge(k, faces, start)
 }
 
 /// The traced boundary with vertices numbered afresh.

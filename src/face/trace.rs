@@ -6,9 +6,9 @@
 //! them meets this one there), so their germs can be sorted round it exactly, and the walk takes the
 //! next one clockwise from where it came: the face stays on the left.
 //!
-//! Arcs come in colours. Nought: arcs about which nothing is known, all pairs are tested. One and two:
-//! the edges of two faces that are merged; edges of one colour meet in common vertices only, which they
-//! name, so only pairs of different colours are tested.
+//! Arcs come in colours. Nought: arcs about which nothing is known, all pairs are tested. One and up: the
+//! edges of the faces that are merged; edges of one colour meet in common vertices only, which they name, so
+//! only pairs of different colours are tested.
 
 use super::approx::Approx;
 use super::hash::FastMap;
@@ -188,7 +188,7 @@ pub(crate) struct Tracer<'a> {
     comps: &'a [Comp],
     pieces: Vec<Piece>,
     first_piece: Vec<u32>,
-    trees: [Tree; 2],
+    tree: Tree,
     boxes: Vec<Bounds>,
     pub(super) vertices: Vec<Vertex>,
     links: Vec<Link>,
@@ -229,7 +229,7 @@ impl<'a> Tracer<'a> {
             comps,
             pieces: Vec::with_capacity(items.len() * 2),
             first_piece: Vec::with_capacity(items.len() + 1),
-            trees: [Tree::default(), Tree::default()],
+            tree: Tree::default(),
             boxes: Vec::new(),
             vertices: ends.map(free).collect(),
             links: Vec::with_capacity(items.len() * 2),
@@ -293,7 +293,7 @@ impl<'a> Tracer<'a> {
         } else {
             0.0
         };
-        let mut entries = [Vec::new(), Vec::new()];
+        let mut entries = Vec::new();
         for (i, item) in self.items.iter().enumerate() {
             self.first_piece.push(self.pieces.len() as u32);
             let b = &spans[i];
@@ -316,7 +316,7 @@ impl<'a> Tracer<'a> {
                     }
                     _ => *b,
                 };
-                entries[usize::from(item.color == 2)].push((bounds, i as u32));
+                entries.push((bounds, i as u32));
                 self.pieces.push(Piece {
                     from,
                     to,
@@ -328,7 +328,7 @@ impl<'a> Tracer<'a> {
             }
         }
         self.first_piece.push(self.pieces.len() as u32);
-        self.trees = entries.map(Tree::new);
+        self.tree = Tree::new(entries);
         self.boxes = spans;
     }
 
@@ -620,14 +620,16 @@ impl<'a> Tracer<'a> {
         self.serial += 1;
         self.stamp[item as usize] = self.serial;
         let (stamp, serial) = (&mut self.stamp, self.serial);
-        // One queries two and two one; nought is its own partner.
-        self.trees[usize::from(me.color == 1)].query(&bounds, |b| {
-            if stamp[b as usize] != serial {
+        let items = self.items;
+        self.tree.query(&bounds, |b| {
+            // Edges of one colour meet at common vertices only.
+            let foreign = me.color == 0 || items[b as usize].color != me.color;
+            if foreign && stamp[b as usize] != serial {
                 stamp[b as usize] = serial;
                 near.push(b);
             }
         });
-        // Arcs on the same curve (faces' edges do not overlap at their vertices).
+        // Arcs on the same curve.
         let mut twins = Vec::new();
         for &b in &near {
             let (s, e) = self.meet(item, b);
@@ -636,7 +638,7 @@ impl<'a> Tracer<'a> {
                 (Carrier::Vertical(..), Carrier::Vertical(..)) => s < e,
                 _ => false,
             };
-            if twin && me.color == 0 {
+            if twin {
                 twins.push(b);
             }
             for cross in s..e {
@@ -759,7 +761,8 @@ impl<'a> Tracer<'a> {
         }
         self.link(v, twin, Place::Inside);
         for h in hits {
-            if h.other == twin || h.cross == NONE {
+            let color = self.items[h.other as usize].color;
+            if h.other == twin || h.cross == NONE || color != 0 && color == t.color {
                 continue;
             }
             let (s, e) = self.meet(twin, h.other);
@@ -1073,7 +1076,7 @@ impl<'a> Tracer<'a> {
 
     /// What lies next below a point.
     fn ray_down(&mut self, p: Point) -> Ray {
-        let trees = std::mem::take(&mut self.trees);
+        let tree = std::mem::take(&mut self.tree);
         let (a, b) = self.k.enclosure(p.x);
         let height = self.k.height(p.c, p.x);
         let ceiling = if height.hi().is_nan() {
@@ -1084,7 +1087,7 @@ impl<'a> Tracer<'a> {
         let floor = std::cell::Cell::new(f64::NEG_INFINITY);
         let mut best: Option<(u32, CurveId, Approx)> = None;
         let (mut through, mut beside) = (None, None);
-        for tree in &trees {
+        {
             tree.descend(
                 |n| n[0] <= b && a <= n[1] && n[2] <= ceiling && n[3] >= floor.get(),
                 |i| {
@@ -1132,7 +1135,7 @@ impl<'a> Tracer<'a> {
                 },
             );
         }
-        self.trees = trees;
+        self.tree = tree;
         Ray {
             below: best.map(|(i, c, _)| (i, c)),
             through,
