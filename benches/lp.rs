@@ -1,5 +1,6 @@
 //! Whole exact solves with their certificates, and the checking of these: seconds of wall time,
 //! best of a few. The instances lie outside the repository; without them the bench says so.
+#![allow(clippy::unwrap_used)]
 
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{Options, read_model, solve};

@@ -1,6 +1,7 @@
 //! What the number layer costs, in microseconds: `cargo bench --bench number`.
 //!
 //! No harness: each line is the least of several batches, which on a shared machine says more than a mean.
+#![allow(clippy::unwrap_used)]
 use num_rational::BigRational;
 use snapfit::number::{Algebraic, Int, Poly, Rat};
 use std::hint::black_box;

@@ -2,6 +2,7 @@
 //! agrees with the published optimum beside it, pivots, seconds of CPU.
 //!
 //! `lp_table [--exact] [--limit SECONDS] FILE…`
+#![allow(clippy::unwrap_used)]
 
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{Method, Options, Outcome, read_model, solve};

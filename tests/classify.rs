@@ -1,5 +1,6 @@
 //! Verdicts: the handbook's hooks, the paper's figures, critical friction against simulation, the
 //! cover of the circle against exact single directions, and what a verdict may not depend on.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 

@@ -1,5 +1,6 @@
 //! Certified peaks against dense sampling by another route: the balance of torques at a contact
 //! whose sliding direction is read off finite differences of the motion itself.
+#![allow(clippy::unwrap_used)]
 
 use snapfit::analysis::escape::Ground;
 use snapfit::analysis::peak::{Instant, Peak, force, torque};

@@ -1,6 +1,7 @@
 //! The exact LP solver against an oracle that works quite differently (Fourier–Motzkin
 //! elimination), classics that make simplex methods cycle or crawl, extreme numbers, and the
 //! published optima of netlib. `TEST_MULT` scales the random runs (1 is the full size).
+#![allow(clippy::unwrap_used)]
 
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{

@@ -1,6 +1,6 @@
 //! Verdicts: does it lock, why, how firmly, and with what forces (DP §3.2, §4.4, Appendix A).
 //!
-//! A trajectory says what moves; a designer asks what that means. [`classify`] runs the ways out
+//! A trajectory says what moves; a designer asks what that means. [`classify`](fn@classify) runs the ways out
 //! from where a plan ended ([`escape`]) and names the weakest; [`critical`] finds the least
 //! friction that would lock, exactly; [`peak`] encloses the forces of the sliding stretches
 //! ([`stretch`]: the balance of forces is derived there) as narrowly as asked, with the outward

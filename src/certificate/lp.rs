@@ -8,7 +8,7 @@
 //!   (Aᵀy)·(columns' values), though the two are one number.
 //! - *unbounded*: a feasible point and a direction that never leaves the bounds and improves.
 //! - *bounds*: a feasible point and prices whose dual objective is the other end.
-//! - *basis*: see [`super::lp_basis`].
+//! - *basis*: see the module `lp_basis`.
 //!
 //! All sums are of integers over common denominators.
 

@@ -602,13 +602,9 @@ impl Kernel {
         // Deflation: what remains after dividing by u − e has the other roots.
         let mut g = h;
         let mut n = 4;
-        let trim = |g: &[Approx; 5], mut n: usize| {
-            while n > 0 && g[n].sign() == Some(0) {
-                n -= 1;
-            }
-            n
-        };
-        n = trim(&g, n);
+        while n > 0 && g[n].sign() == Some(0) {
+            n -= 1;
+        }
         for &e in known {
             if n == 0 {
                 break;
@@ -937,8 +933,8 @@ fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     }
     let mut left = [Approx::default(); 5];
     let mut right = *c;
-    for k in 0..=n {
-        left[k] = right[0];
+    for (k, l) in left.iter_mut().enumerate().take(n + 1) {
+        *l = right[0];
         for j in 0..n - k {
             right[j] = right[j] * r + right[j + 1] * s;
         }

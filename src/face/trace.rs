@@ -789,8 +789,8 @@ impl<'a> Tracer<'a> {
                 (vertex.germs + vertex.germ_count) as usize,
             );
         }
-        let (mut rights, mut lefts): (Vec<(CurveId, u32)>, Vec<(CurveId, u32)>) =
-            Default::default();
+        let mut rights: Vec<(CurveId, u32)> = Vec::new();
+        let mut lefts: Vec<(CurveId, u32)> = Vec::new();
         let (mut up, mut down) = (NONE, NONE);
         let mut at = vertex.links;
         while at != NONE {
