@@ -16,6 +16,9 @@
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`report`]: results as JSON with every number exact, summaries, pictures.
+//! * [`analysis`]: forces and motion diodes. [`face`](mod@face): the single face of an arrangement.
+//!   [`lp`] and [`certificate`]: exact linear programming and its checker.
 //! * [`lp`]: exact linear programming, with certificates.
 //! * [`certificate`]: the checker of certificates, which shares no code with what made them.
 //!
