@@ -317,6 +317,11 @@ fn course(
                 covered.doubts += 1;
                 continue 'pawls;
             }
+            // A snap at the very end of a phase belongs to the next one; doubles cannot tell.
+            if forecast.snaps.iter().any(|s| s.t > planned * (1.0 - 1e-6)) {
+                covered.doubts += 1;
+                continue 'pawls;
+            }
             let Some(end) = forecast.path.last() else {
                 continue 'pawls;
             };

@@ -57,6 +57,8 @@ struct State {
     roomy: bool,
     /// The greatest width so far.
     widest: f64,
+    /// The side on which alone rest had room, last time it had room on one side only, and when.
+    lean: (i32, f64),
 }
 
 pub struct Follower<'a> {
@@ -258,6 +260,7 @@ impl Follower<'_> {
             side,
             roomy: lo < -BLUR && hi > BLUR,
             widest: hi - lo,
+            lean: (i32::from(lo > -1e-5) - i32::from(hi < 1e-5), t),
         }
     }
 
@@ -412,6 +415,14 @@ impl Follower<'_> {
         let (was, is) = (s.hi - s.lo, n.hi - n.lo);
         if was < 4.0 * BLUR && s.widest > 100.0 * BLUR && is > was {
             self.out.doubt = Some((s.t, "a pinch"));
+            return Step::Over;
+        }
+        // At rest where the room changes sides at once: the two parts meet in a point only, and
+        // doubles cannot tell whether rest went from one to the other.
+        if n.lean.0 == 0 || n.side != 0 {
+            n.lean = s.lean;
+        } else if n.lean.0 == -s.lean.0 && n.t - s.lean.1 < 1e3 * SHORTEST * self.w.duration {
+            self.out.doubt = Some((s.lean.1, "the room at rest changes sides"));
             return Step::Over;
         }
         n.widest = is.max(s.widest);
