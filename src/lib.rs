@@ -16,6 +16,7 @@
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`]: the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

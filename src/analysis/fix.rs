@@ -245,10 +245,7 @@ fn atan_point(x: &Fix) -> Fix {
     // Alternating with falling terms (0 ≤ y ≤ 1): the tail is less than the first term left out.
     let y2 = y.mul(&y);
     let (mut power, mut sum, mut k) = (y.clone(), b.int(0), 0i64);
-    loop {
-        let Some(term) = power.div(&b.int(2 * k + 1)) else {
-            break;
-        };
+    while let Some(term) = power.div(&b.int(2 * k + 1)) {
         sum = if k % 2 == 0 {
             sum.add(&term)
         } else {
