@@ -17,10 +17,10 @@
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
 //! * [`report`]: results as JSON with every number exact, summaries, pictures.
-//! * [`analysis`]: forces and motion diodes. [`face`](mod@face): the single face of an arrangement.
-//!   [`lp`] and [`certificate`]: exact linear programming and its checker.
-//! * [`lp`]: exact linear programming, with certificates.
-//! * [`certificate`]: the checker of certificates, which shares no code with what made them.
+//! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
+//! * [`face`](mod@face): the single face of an arrangement of arcs.
+//! * [`lp`], [`certificate`]: exact linear programming, and the checker of its certificates, which
+//!   shares only the reader and the numbers with it.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

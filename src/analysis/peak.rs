@@ -1,7 +1,7 @@
 //! The highest contact force along a stretch, certified (DP App. A, and where it fails).
 //!
-//! Along a stretch the force is f(x) = K·T(x)·den(x)/N(x), T = θ or, where θ and N vanish
-//! together, θ/x. Prop. A.1 says that it peaks at an end; that fails for type A, and for type B
+//! Along a stretch the force is f(x) = K·T(x)·den(x)/N(x), T = θ/x (x taken into den) or, past
+//! half a turn, θ. Prop. A.1 says that it peaks at an end; that fails for type A, and for type B
 //! needs a cut where the sliding reverses. So nothing is assumed: the stretch is cut at the roots
 //! of d, and each part is searched by branch and bound on x. A cell on which the derivative's
 //! numerator
@@ -229,8 +229,10 @@ struct Tables {
     scale: Fix,
     num: Vec<Fix>,
     den: Vec<Fix>,
-    dnum: Vec<Fix>,
-    dden: Vec<Fix>,
+    /// num·den and num′·den − num·den′, multiplied out exactly: near a common root of both
+    /// terms nothing is lost.
+    both: Vec<Fix>,
+    bend: Vec<Fix>,
 }
 
 impl Part {
@@ -242,12 +244,18 @@ impl Part {
             self.den.0.remove(0);
             self.by_x = true;
         }
+        let cancelled = self.by_x;
+        if self.half_turn == 0 && !self.by_x {
+            // θ = x·(θ/x): where f is nearly 0/0 the cancellation is then in the polynomials.
+            self.num.0.insert(0, Rat::zero());
+            self.by_x = true;
+        }
         let den = self.den.poly();
         if den.is_zero() {
             return (Peak::Unbounded, Spot::End(0));
         }
         for k in 0..2 {
-            let rests = self.half_turn == 0 && self.ends[k].sign() == 0 && !self.by_x;
+            let rests = self.half_turn == 0 && self.ends[k].sign() == 0 && !cancelled;
             if self.ends[k].sign_of(&den) == 0 && !rests {
                 return (Peak::Unbounded, Spot::End(k));
             }
@@ -265,13 +273,15 @@ impl Part {
 
     fn search(&self, n: u64) -> Option<(Rat, Rat, Spot)> {
         let b = Bits(n);
+        let (rise, fall) = (self.num.derivative(), self.den.derivative());
+        let bend = rise.mul(&self.den).sub(&self.num.mul(&fall));
         let t = Tables {
             b,
             scale: b.rat(&self.scale2).sqrt()?,
             num: self.num.fix(b),
             den: self.den.fix(b),
-            dnum: self.num.derivative().fix(b),
-            dden: self.den.derivative().fix(b),
+            both: self.num.mul(&self.den).fix(b),
+            bend: bend.fix(b),
         };
         let (mut lo, mut hi) = (Rat::zero(), Rat::zero());
         let mut at = Spot::End(0);
@@ -289,7 +299,8 @@ impl Part {
         if boxes[0].1 < boxes[1].0 {
             cells.push((boxes[0].1.clone(), boxes[1].0.clone(), 0u32));
         }
-        let mut budget = 20_000u32;
+        // More cells with more bits, so that every search ends.
+        let mut budget = 20_000 + 100 * n;
         while let Some((l, r, depth)) = cells.pop() {
             budget = budget.checked_sub(1)?;
             let x = b.hull(&l, &r);
@@ -362,8 +373,18 @@ impl Part {
             _ => None,
         };
         let series = two.sub(&x.mul(x).mul(&third(2))).join(&two);
-        let slope = x.mul(&third(-4)).join(&b.int(0));
-        (value.unwrap_or(series), slope)
+        let value = value.unwrap_or(series);
+        // A′ = (2/(1 + x²) − A)/x away from 0.
+        let rough = x.mul(&third(-4)).join(&b.int(0));
+        let fine = match x.sign() {
+            Some(s) if s != 0 => slope.sub(&value).div(x),
+            _ => None,
+        };
+        let slope = match fine {
+            Some(f) if f.hi() - f.lo() < rough.hi() - rough.lo() => f,
+            _ => rough,
+        };
+        (value, slope)
     }
 
     fn value(&self, t: &Tables, x: &Fix) -> Option<Fix> {
@@ -375,10 +396,8 @@ impl Part {
     /// E(x), up to a sign that is constant along the part.
     fn slope(&self, t: &Tables, x: &Fix) -> Fix {
         let (lever, rate) = self.lever(t.b, x);
-        let (num, den) = (horner(&t.num, x, t.b), horner(&t.den, x, t.b));
-        let (dnum, dden) = (horner(&t.dnum, x, t.b), horner(&t.dden, x, t.b));
-        let bend = dnum.mul(&den).sub(&num.mul(&dden));
-        rate.mul(&num).mul(&den).add(&lever.mul(&bend))
+        let (both, bend) = (horner(&t.both, x, t.b), horner(&t.bend, x, t.b));
+        rate.mul(&both).add(&lever.mul(&bend))
     }
 
     fn derivative(&self, t: &Tables, x: &Fix) -> Option<Fix> {
