@@ -70,8 +70,8 @@ impl Tree {
     }
 
     /// Calls `found` with the entries whose boxes meet `b`.
-    pub(crate) fn query(&self, b: &Bounds, mut found: impl FnMut(u32)) {
-        self.descend(|node| meet(node, b), &mut found);
+    pub(crate) fn query(&self, b: &Bounds, found: impl FnMut(u32)) {
+        self.descend(|node| meet(node, b), found);
     }
 
     /// Walks the tree from the root; only nodes that `wanted` admits are entered. Nodes with larger t come

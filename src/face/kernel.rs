@@ -922,7 +922,7 @@ fn settle(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
 /// Halves (not quite, since a root in the very middle is likely) and settles both parts.
 fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &mut Roots) -> bool {
     let (g, n) = (whole.g, whole.n);
-    if depth >= DEPTH || !(a < b) {
+    if depth >= DEPTH || a >= b {
         return false;
     }
     const CUT: f64 = 0.484375;
@@ -933,8 +933,8 @@ fn deeper(whole: &Whole<'_>, c: &[Approx; 5], a: f64, b: f64, depth: u32, out: &
     }
     let mut left = [Approx::default(); 5];
     let mut right = *c;
-    for (k, l) in left.iter_mut().enumerate().take(n + 1) {
-        *l = right[0];
+    for (k, first) in left.iter_mut().enumerate().take(n + 1) {
+        *first = right[0];
         for j in 0..n - k {
             right[j] = right[j] * r + right[j + 1] * s;
         }
@@ -975,7 +975,7 @@ fn refine(g: &[Approx], a: f64, b: f64, first: i32) -> Option<(f64, f64)> {
         };
         let still = (next - x).abs() <= x.abs() * f64::EPSILON;
         x = next;
-        if still || !(l < r) {
+        if still || l >= r {
             break;
         }
     }

@@ -6,7 +6,7 @@
 //! clear of ∂R, is the face of z in the arrangement of ∂R. So the merge is again a walk, on
 //! edges instead of arcs, and hidden arcs are never seen again. It follows the component of z only:
 //! no other component of R ∩ B is touched, though there may be quadratically many crossings in all. Nothing in
-//! the argument is special to two faces; eight at a time make a third of the levels.
+//! the argument is special to two faces; sixteen at a time make a quarter of the levels.
 //!
 //! Edges stay cut at every vertex, also where an arc ends on them from outside. Nothing more is needed for
 //! the count of the whole arrangement: let p be a point of the final face's boundary where arcs meet. The arcs
@@ -99,7 +99,7 @@ fn trace(
 
 /// How many faces one merge takes: each level of the tree walks along all edges that are left, so fewer levels
 /// are faster as long as few pairs of edges are near each other.
-const WAYS: usize = 8;
+const WAYS: usize = 16;
 
 /// How the arcs are dealt to the leaves: a fixed seed, so that every run is the same.
 const SEED: u64 = 0x5eed_5eed_5eed_5eed;

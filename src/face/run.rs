@@ -73,7 +73,8 @@ impl fmt::Display for FaceError {
 }
 impl std::error::Error for FaceError {}
 
-/// Arcs a leaf of the merge tree, found by measurement.
+/// Arcs a leaf of the merge tree: of 24 to 1024, with 2 to 32 ways, this was fastest on the sets of arcs
+/// without making leaves a large part of any.
 const LEAF: usize = 512;
 
 /// The face of the arcs that holds the start: a [`Question`] with graphs only.

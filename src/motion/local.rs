@@ -239,7 +239,11 @@ pub(super) fn resolve(
                 return jam(closing, wall, Some(arc));
             }
             let near = ends.map(|(top, bottom)| if lower { top } else { bottom });
-            let kept = if at_rest { None } else { kept_part(slice, place, inc, arc, lower, free) };
+            let kept = if at_rest {
+                None
+            } else {
+                kept_part(slice, place, inc, arc, lower, free)
+            };
             settle(slice, kept.or(near), lower, at_rest)
         }
         State::Rest => {
