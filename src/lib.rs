@@ -14,8 +14,13 @@
 //! * [`geometry`]: points, rational rotations, polygons, exact predicates.
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
-//! * [`slice`]: the cylinder of one phase, cut by monotone arcs with named ends.
+//! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`report`]: results as JSON with every number exact, summaries, pictures.
+//! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
+//! * [`face`](mod@face): the single face of an arrangement of arcs.
+//! * [`lp`], [`certificate`]: exact linear programming, and the checker of its certificates, which
+//!   shares only the reader and the numbers with it.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -43,9 +48,12 @@
 //! # }
 //! ```
 
+pub mod analysis;
+pub mod certificate;
 pub mod contact;
 pub mod face;
 pub mod geometry;
+pub mod lp;
 pub mod motion;
 pub mod number;
 pub mod report;

@@ -1,5 +1,6 @@
 //! The face of bare arcs against the whole arrangement, built slab by slab with no geometry shared, against
 //! the published counts, and against damaged input.
+#![allow(clippy::unwrap_used)]
 
 mod common;
 

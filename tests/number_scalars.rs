@@ -1,4 +1,6 @@
 //! Integers, rationals, intervals and literals, against a second implementation and by hand.
+// Tests may panic: that is how they fail.
+#![allow(clippy::unwrap_used)]
 mod common;
 
 use num_bigint::BigInt;

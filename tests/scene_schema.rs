@@ -1,4 +1,5 @@
 //! The schema against the reader: the same keys, and every scene that reads also validates.
+#![allow(clippy::unwrap_used)]
 
 use serde_json::{Map, Value};
 use snapfit::scene::{read_scene, scene_schema};

@@ -13,10 +13,12 @@
 //! conditions (the contact is on the edge, not past its ends). Both contact types look alike
 //! from here on; what distinguishes them stays in this module and in the friction rules.
 
+mod cone;
 mod patch;
 mod shape;
 mod trig;
 
+pub use cone::Cones;
 pub use patch::{Frame, Patch, patches};
 pub use shape::{ObstacleShape, PawlShape, Ring};
 pub use trig::{Chart, Trig};

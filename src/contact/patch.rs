@@ -99,8 +99,8 @@ pub fn patches(frame: &Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> 
                 let edge_box = box_of(&[q, q_next]);
                 let d2 = dist2(edge_box, path);
                 if d2.lo <= reach2 {
-                    for i in 0..m {
-                        if ring.convex[i] && d2.lo <= radius2[i].hi && d2.hi >= radius2[i].lo {
+                    for (i, r2) in radius2.iter().enumerate() {
+                        if ring.convex[i] && d2.lo <= r2.hi && d2.hi >= r2.lo {
                             out.push(type_b(frame, pawl, oring, o, r, i, j, edge_base));
                         }
                     }

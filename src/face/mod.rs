@@ -11,6 +11,9 @@
 //! with error bounds first, algebraic numbers where those meet (`kernel.rs`). Overlapping arcs, common points,
 //! tangencies, arcs that end inside others, isolated arcs and unbounded faces are ordinary input.
 
+// `!(a < b)` is meant as written: true for a NaN too, so that a filter falls back.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod approx;
 mod hash;
 mod index;

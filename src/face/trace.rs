@@ -790,7 +790,7 @@ impl<'a> Tracer<'a> {
             );
         }
         let mut rights: Vec<(CurveId, u32)> = Vec::new();
-        let mut lefts = Vec::new();
+        let mut lefts: Vec<(CurveId, u32)> = Vec::new();
         let (mut up, mut down) = (NONE, NONE);
         let mut at = vertex.links;
         while at != NONE {

@@ -166,13 +166,16 @@ fn against_rest(slice: &Slice, i: &Incident, after: bool) -> Ordering {
 
 /// Decides what follows at a place that the state reaches (DP §9.2; see the module's opening).
 ///
-/// `at_rest` says whether the place is θ = 0.
+/// `at_rest` says whether the place is θ = 0. `free` tells by the polygons whether the side above
+/// (true) or below an arc is free just after; it is asked only where the interval splits at the
+/// state's own place.
 pub(super) fn resolve(
     slice: &Slice,
     place: &Place,
     inc: &[Incident],
     state: State,
     at_rest: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
 ) -> Next {
     let own = match state {
         State::On { arc, .. } => inc.iter().find(|i| i.arc == arc),
@@ -236,7 +239,12 @@ pub(super) fn resolve(
                 return jam(closing, wall, Some(arc));
             }
             let near = ends.map(|(top, bottom)| if lower { top } else { bottom });
-            settle(slice, near, lower, at_rest)
+            let kept = if at_rest {
+                None
+            } else {
+                kept_part(slice, place, inc, arc, lower, free)
+            };
+            settle(slice, kept.or(near), lower, at_rest)
         }
         State::Rest => {
             if !up_open && !down_open {
@@ -244,9 +252,90 @@ pub(super) fn resolve(
                 let closing: Vec<ArcId> = above.iter().chain(&below).copied().collect();
                 return jam(&closing, &wall, None);
             }
-            at_rest_next(slice, ends, up_open, down_open)
+            let next = at_rest_next(slice, ends, up_open, down_open);
+            match next {
+                Next::Rest => next,
+                _ if rests_on_level(slice, place, inc, true, free) => Next::Rest,
+                _ => next,
+            }
         }
     }
+}
+
+/// The germ next above (`up`) or below another one to the right.
+fn neighbour<'a>(
+    slice: &Slice,
+    place: &Place,
+    inc: &'a [Incident],
+    of: &Incident,
+    up: bool,
+) -> Option<&'a Incident> {
+    let side = if up {
+        Ordering::Greater
+    } else {
+        Ordering::Less
+    };
+    let beyond = inc
+        .iter()
+        .filter(|i| i.germs.right && cmp_germs(slice, place, i, of, true) == side);
+    beyond.reduce(|best, i| {
+        if cmp_germs(slice, place, i, best, true) == side.reverse() {
+            i
+        } else {
+            best
+        }
+    })
+}
+
+/// Where the state's own curve goes on and the part beside it is still free, although something
+/// else begins at this very place: "away from rest the state keeps to the part that still borders
+/// its curve".
+fn kept_part(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+    own: ArcId,
+    lower: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
+) -> Option<Incident> {
+    let a = slice.arc(own);
+    let goes_on = |i: &&Incident| {
+        let b = slice.arc(i.arc);
+        i.germs.right
+            && (i.arc == own
+                || slice.coincide(own, i.arc)
+                || (a.curve == b.curve && a.branch == b.branch && a.shape != Shape::Level))
+    };
+    let on = inc
+        .iter()
+        .filter(goes_on)
+        .min_by_key(|i| slice.arc(i.arc).contact)?;
+    let next = neighbour(slice, place, inc, on, lower)?;
+    let facing = if lower { Side::Below } else { Side::Above };
+    (slice.arc(next.arc).side == facing && free(on.arc, lower)).then(|| on.clone())
+}
+
+/// Whether rest touches a level that goes on and the part beside that level is still free. With
+/// `before`, only a level that was there already counts.
+pub(super) fn rests_on_level(
+    slice: &Slice,
+    place: &Place,
+    inc: &[Incident],
+    before: bool,
+    free: &dyn Fn(ArcId, bool) -> bool,
+) -> bool {
+    inc.iter().any(|i| {
+        let arc = slice.arc(i.arc);
+        let lower = arc.side == Side::Above;
+        let facing = if lower { Side::Below } else { Side::Above };
+        arc.shape == Shape::Level
+            && i.germs.right
+            && (i.germs.left || !before)
+            && matches!(arc.side, Side::Above | Side::Below)
+            && neighbour(slice, place, inc, i, lower)
+                .is_some_and(|n| slice.arc(n.arc).side == facing)
+            && free(i.arc, lower)
+    })
 }
 
 /// The near end of an interval whose side above (`lower`) or below the place is open.

@@ -1,12 +1,12 @@
 //! One pawl through one phase: the simple algorithm (DP §9, "Simple Algorithm").
 //!
 //! The state is at rest or on an arc. Find the next time at which anything touches it, look at
-//! the place ([`super::local`]), go on. Each step costs O(n) box tests and few exact ones.
+//! the place (the module `local`), go on. Each step costs O(n) box tests and few exact ones.
 
 use super::friction::stick_time;
 use super::local::{
     Incident, Landing, Next, Place, State, at_rest_next, contacts, group, incident, is_tangency,
-    resolve, right_sorted, settle, snap,
+    resolve, rests_on_level, right_sorted, settle, snap,
 };
 use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
 use crate::contact::{Chart, Contact};
@@ -129,7 +129,7 @@ impl Runner<'_> {
             on: Vec::new(),
         };
         let inc = incident(self.slice, &Place::new(z.clone(), start.half_turn));
-        let next = self.begin(start, &z, &inc);
+        let next = self.begin(start, &z, &inc, touching);
         let entry = Entry {
             inc: &inc,
             tangency: true,
@@ -159,7 +159,7 @@ impl Runner<'_> {
     // ── the start of a phase ────────────────────────────────────────────────────────────────
 
     /// What follows at the first instant: the right limit, from nothing but the geometry.
-    fn begin(&self, start: &Angle, z: &Point, inc: &[Incident]) -> Next {
+    fn begin(&self, start: &Angle, z: &Point, inc: &[Incident], touching: &[Contact]) -> Next {
         let slice = self.slice;
         let side = start.side();
         let toward = Next::Snap(-side);
@@ -177,15 +177,22 @@ impl Runner<'_> {
         };
         let up = self.free_beside(top.arc, true, &self.clock);
         let down = self.free_beside(bottom.arc, false, &self.clock);
+        let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &self.clock);
         if side == 0 && (up || down) {
-            return at_rest_next(slice, Some((top.clone(), bottom.clone())), up, down);
+            let next = at_rest_next(slice, Some((top.clone(), bottom.clone())), up, down);
+            return match next {
+                Next::Rest => next,
+                _ if rests_on_level(slice, &place, inc, false, &free) => Next::Rest,
+                _ => next,
+            };
         }
         let (near_open, far_open) = if side > 0 { (down, up) } else { (up, down) };
-        if near_open {
+        let near = if side > 0 { top } else { bottom };
+        // What held the pawl in the phase before holds it still, if it can.
+        if near_open && !(far_open && touching.contains(&slice.arc(near.arc).contact)) {
             return toward;
         }
         if far_open {
-            let near = if side > 0 { top } else { bottom };
             return settle(slice, Some(near.clone()), side > 0, false);
         }
         // A cusp that opens here: between two neighbouring arcs.
@@ -224,7 +231,7 @@ impl Runner<'_> {
     fn free_beside(&self, id: ArcId, above: bool, from: &Time) -> bool {
         let slice = self.slice;
         let arc = slice.arc(id);
-        let mut until = arc.end().t.clone();
+        let mut until = self.within_phase(from, arc.end().t.clone());
         for &b in slice.arcs_in(arc.chart) {
             if b != id
                 && let Some(p) = slice.first_meeting(id, b, from, &until)
@@ -239,6 +246,15 @@ impl Runner<'_> {
         }
     }
 
+    /// `until`, but not past the phase's end: what can only be met after it was never made.
+    fn within_phase(&self, from: &Time, until: Time) -> Time {
+        if *from < self.end && self.end < until {
+            self.end.clone()
+        } else {
+            until
+        }
+    }
+
     /// What must hold just after an instant, by the polygons alone: the state's own interval is
     /// free beside it, and at rest nothing penetrates. Asked by debug assertions only.
     fn holds_after(&self, at: &Time) -> bool {
@@ -246,7 +262,7 @@ impl Runner<'_> {
             State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
             State::Rest => {
                 let next = self.rest_hits.iter().find(|t| *t > at);
-                let soon = at.shift(&Rat::one());
+                let soon = self.within_phase(at, at.shift(&Rat::one()));
                 let t = Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
                 self.free_at(Chart::Rest, &Rat::zero(), &t)
             }
@@ -257,7 +273,7 @@ impl Runner<'_> {
     /// where no arc leaves z to the right.
     fn free_along(&self, z: &Point) -> bool {
         let slice = self.slice;
-        let mut until = Time::from(Rat::one());
+        let mut until = self.within_phase(&self.clock, Time::from(Rat::one()));
         for &b in slice.arcs_in(z.chart) {
             let arc = slice.arc(b);
             if !arc.spans_x(&z.x) {
@@ -400,7 +416,8 @@ impl Runner<'_> {
         };
         let place = Place::new(z, half_turn);
         let inc = incident(self.slice, &place);
-        let next = resolve(self.slice, &place, &inc, self.state, at_rest);
+        let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &at);
+        let next = resolve(self.slice, &place, &inc, self.state, at_rest, &free);
         self.enter(
             next,
             angle,
@@ -556,7 +573,7 @@ impl Runner<'_> {
         let last = *at == self.end;
         let stop = match next {
             Next::Rest => {
-                self.to_rest(&angle, at, entry);
+                self.come_to_rest(&angle, at, entry);
                 None
             }
             Next::Follow {
@@ -597,7 +614,7 @@ impl Runner<'_> {
         }
     }
 
-    fn to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
+    fn come_to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
         if self.held.is_empty() {
             // A touch without effect, where nothing was touching before or is after.
             let lying = |i: &Incident| self.slice.arc(i.arc).shape == Shape::Level;

@@ -73,8 +73,22 @@ impl Angle {
             Chart::Back => (h - 1).div_euclid(2),
         }
     }
-    /// Exact comparison along the covering line.
-    pub fn cmp(&self, o: &Angle) -> Ordering {
+}
+
+impl PartialEq for Angle {
+    fn eq(&self, o: &Angle) -> bool {
+        self.cmp(o).is_eq()
+    }
+}
+impl Eq for Angle {}
+impl PartialOrd for Angle {
+    fn partial_cmp(&self, o: &Angle) -> Option<Ordering> {
+        Some(self.cmp(o))
+    }
+}
+/// Exact comparison along the covering line.
+impl Ord for Angle {
+    fn cmp(&self, o: &Angle) -> Ordering {
         if self.half_turn == o.half_turn {
             return self.x.cmp(&o.x);
         }

@@ -54,11 +54,14 @@ fn degree_sums(degrees: impl Iterator<Item = usize>) -> u128 {
     degrees.fold(1, |set, d| set | set << d)
 }
 
+/// A prime, the distinct-degree factorisation modulo it, and the number of irreducible factors.
+type Trial = (u64, Vec<(Residues, usize)>, usize);
+
 fn zassenhaus(p: Poly, out: &mut Vec<Poly>) {
     const TRIALS: usize = 6;
     let n = p.coeffs().len() - 1;
     let mut allowed = u128::MAX;
-    let mut best: Option<(u64, Vec<(Residues, usize)>, usize)> = None;
+    let mut best: Option<Trial> = None;
     let mut good = 0;
     // The degree of the factors of a square-free polynomial drops or doubles up only at the finitely many
     // primes that divide its leading coefficient or discriminant.

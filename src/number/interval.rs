@@ -23,7 +23,7 @@ pub struct Interval {
 fn sum_down(a: f64, b: f64) -> f64 {
     let (s, e) = two_sum(a, b);
     // A NaN error (overflow on the way) counts as inexact.
-    if e >= 0.0 && e < f64::INFINITY && s < f64::INFINITY {
+    if (0.0..f64::INFINITY).contains(&e) && s < f64::INFINITY {
         s
     } else {
         s.next_down()
@@ -32,7 +32,7 @@ fn sum_down(a: f64, b: f64) -> f64 {
 #[inline]
 fn sum_up(a: f64, b: f64) -> f64 {
     let (s, e) = two_sum(a, b);
-    if e <= 0.0 && e > f64::NEG_INFINITY && s > f64::NEG_INFINITY {
+    if (0.0..f64::INFINITY).contains(&-e) && s > f64::NEG_INFINITY {
         s
     } else {
         s.next_up()

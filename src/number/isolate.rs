@@ -6,7 +6,7 @@
 //! piece shows none or one. On a square-free polynomial this ends. Positive and negative roots are
 //! searched apart, from zero to a power of two above all roots.
 
-use super::{Int, Poly, Rat};
+use super::{Int, Poly, Rat, float};
 
 /// One real root.
 pub(crate) enum Isolated {
@@ -23,8 +23,22 @@ pub(crate) enum Isolated {
     },
 }
 
+impl Isolated {
+    /// The root of the polynomial in −x.
+    pub(crate) fn mirror(&mut self) {
+        match self {
+            Isolated::Exact(v) => *v = -&*v,
+            Isolated::Open { lo, hi, .. } => {
+                let t = -&*lo;
+                *lo = -&*hi;
+                *hi = t;
+            }
+        }
+    }
+}
+
 /// A power of two 2^k, strictly above the size of every complex root (Fujiwara's bound).
-fn root_bound(c: &[Int]) -> i64 {
+pub(crate) fn root_bound(c: &[Int]) -> i64 {
     let n = c.len() - 1;
     let lead = c[n].bits() as i64;
     let most = (1..=n)
@@ -193,7 +207,14 @@ pub(crate) fn isolate(p: &Poly) -> Vec<Isolated> {
     let zero = c[0].is_zero();
     if zero {
         c = &c[1..];
+    } else if let Some(found) = float::isolate(c) {
+        return found;
     }
+    exact(p, c, zero)
+}
+
+/// The exact search: `c` are the coefficients of `p` without the root zero.
+fn exact(p: &Poly, c: &[Int], zero: bool) -> Vec<Isolated> {
     let mut out = Vec::new();
     if c.len() > 1 {
         let mirrored: Vec<Int> = c
@@ -203,16 +224,7 @@ pub(crate) fn isolate(p: &Poly) -> Vec<Isolated> {
             .collect();
         positive(&mirrored, &mut out);
         out.reverse();
-        for r in &mut out {
-            match r {
-                Isolated::Exact(v) => *v = -&*v,
-                Isolated::Open { lo, hi, .. } => {
-                    let t = -&*lo;
-                    *lo = -&*hi;
-                    *hi = t;
-                }
-            }
-        }
+        out.iter_mut().for_each(Isolated::mirror);
     }
     if zero {
         out.push(Isolated::Exact(Rat::zero()));
@@ -262,5 +274,65 @@ fn shrink_from_zero(p: &Poly, lo: &mut Int, hi: &mut Int, e: &mut u64) {
     } else {
         *lo = cut;
         *hi = far;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Algebraic;
+
+    /// A reproducible stream of small and large coefficients.
+    fn coefficients(seed: &mut u64, n: usize, bits: u32) -> Vec<Int> {
+        (0..n)
+            .map(|_| {
+                *seed = seed
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                let v =
+                    Int::from((*seed >> (64 - bits.min(63))) as i64 - (1i64 << (bits.min(63) - 1)));
+                v.shl(u64::from(bits.saturating_sub(63)) * (*seed & 1))
+            })
+            .collect()
+    }
+
+    #[test]
+    fn doubles_walk_the_same_tree_as_the_exact_search() {
+        let (mut seed, mut settled) = (7, 0);
+        for round in 0..600usize {
+            let (n, bits) = (2 + round % 9, [3, 10, 40, 63, 200, 1100][round % 6]);
+            let p = Poly::new(coefficients(&mut seed, n + 1, bits)).squarefree();
+            if p.degree().is_none_or(|d| d < 1) || p.coeff(0).is_zero() {
+                continue;
+            }
+            let exact = exact(&p, p.coeffs(), false);
+            if let Some(fast) = float::isolate(p.coeffs()) {
+                settled += 1;
+                let fast = Algebraic::from_isolated(p.clone(), fast);
+                assert_eq!(fast, Algebraic::from_isolated(p, exact));
+            }
+        }
+        // Not merely correct: the quick way is the usual one.
+        assert!(settled > 400, "{settled}");
+    }
+
+    #[test]
+    fn the_bound_lies_above_the_roots() {
+        for c in [
+            [-8i64, 0, 0, 1],
+            [-7, 0, 0, 1],
+            [-1, 0, 0, 1000],
+            [5, -100, 3, 1],
+            [0, 0, -1, 1],
+        ] {
+            let p = Poly::from_i64(&c);
+            let bound = Rat::dyadic(Int::one(), root_bound(p.coeffs()));
+            for r in p.real_roots() {
+                assert!(
+                    r.cmp_rat(&bound).is_lt() && r.cmp_rat(&-&bound).is_gt(),
+                    "{p}"
+                );
+            }
+        }
     }
 }

@@ -4,6 +4,7 @@
 
 mod algebraic;
 mod factor;
+mod float;
 mod int;
 mod interval;
 mod isolate;
@@ -11,6 +12,8 @@ pub mod literal;
 mod modular;
 mod poly;
 mod rat;
+mod refine;
+mod root;
 
 pub use algebraic::Algebraic;
 pub use int::Int;

@@ -292,3 +292,53 @@ pub(crate) fn trim(v: &mut Vec<u64>) {
         v.pop();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bound_is_one() {
+        let common = Poly::from_i64(&[3, -1, 4, 1]);
+        let (a, b) = (
+            Poly::from_i64(&[1, 5, -9, 2]),
+            Poly::from_i64(&[-6, 5, 3, 5]),
+        );
+        assert_eq!(gcd_degree_bound(&a, &b), Some(0));
+        assert_eq!(gcd_degree_bound(&(&a * &common), &(&b * &common)), Some(3));
+        assert_eq!(gcd_degree_bound(&common, &(&b * &common)), Some(3));
+        assert_eq!(gcd_degree_bound(&Poly::zero(), &a), None);
+        // A leading coefficient that the prime divides.
+        let p = Int::from(P);
+        let vanishing = Poly::new(vec![Int::one(), p.clone()]);
+        assert_eq!(
+            gcd_degree_bound(&vanishing, &Poly::new(vec![Int::from(2i64), p])),
+            None
+        );
+        assert_eq!(gcd_degree_bound(&vanishing, &a), Some(0));
+        // More coefficients than the inline buffer holds.
+        let long = (0..5).fold(common.clone(), |acc, _| &acc * &acc.derivative() + &a);
+        assert_eq!(gcd_degree_bound(&(&long * &common), &common), Some(3));
+    }
+
+    #[test]
+    fn residues_of_all_sizes() {
+        let p = i128::from(P);
+        for v in [
+            0,
+            1,
+            -1,
+            p,
+            -p,
+            p + 1,
+            i128::MAX,
+            i128::MIN,
+            1 << 64,
+            -(1 << 100) + 17,
+        ] {
+            assert_eq!(i128::from(residue(&Int::from(v))), v.rem_euclid(p), "{v}");
+            let big = Int::from(v) * Int::from(v) * Int::from(v);
+            assert_eq!(residue(&big), big.mod_u64(P), "{v}³");
+        }
+    }
+}

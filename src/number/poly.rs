@@ -521,3 +521,79 @@ impl fmt::Debug for Poly {
     }
 }
 ops!(Poly);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn from_roots(lead: i64, roots: &[i64]) -> Poly {
+        roots
+            .iter()
+            .fold(Poly::from_i64(&[lead]), |p, r| p * Poly::from_i64(&[-r, 1]))
+    }
+
+    #[test]
+    fn resultants_are_products_over_roots() {
+        let lists: [&[i64]; 6] = [
+            &[],
+            &[2],
+            &[-1, 4],
+            &[0, 3, -5],
+            &[1, 1, 2, -7],
+            &[9, -9, 8, 3, 0],
+        ];
+        for a in lists {
+            for b in lists {
+                for (la, lb) in [(1i64, 1i64), (-2, 3), (5, -7)] {
+                    let (p, q) = (from_roots(la, a), from_roots(lb, b));
+                    // lc(p)^deg q · Π q(root of p)
+                    let want = a.iter().fold(Int::from(la).pow(b.len() as u32), |acc, &r| {
+                        acc * q.eval_int(&Int::from(r))
+                    });
+                    assert_eq!(p.resultant(&q), want, "{p}; {q}");
+                }
+            }
+        }
+        assert_eq!(
+            Poly::zero().resultant(&Poly::from_i64(&[1, 1])),
+            Int::zero()
+        );
+        // Multiplicative in each argument, and of no matter to the order but for the sign.
+        let (p, q, r) = (
+            Poly::from_i64(&[3, -1, 0, 2]),
+            Poly::from_i64(&[-5, 0, 7]),
+            Poly::from_i64(&[1, 2, 3, 4, 5]),
+        );
+        assert_eq!((&p * &q).resultant(&r), p.resultant(&r) * q.resultant(&r));
+        assert_eq!(p.resultant(&(&q * &r)), p.resultant(&q) * p.resultant(&r));
+        assert_eq!(p.resultant(&q), q.resultant(&p));
+        let odd = Poly::from_i64(&[4, 1, 1, 1]);
+        assert_eq!(p.resultant(&odd), -odd.resultant(&p));
+    }
+
+    #[test]
+    fn printed_as_people_write() {
+        assert_eq!(Poly::from_i64(&[-1, 1, 0, -2]).to_string(), "-2x^3 + x - 1");
+        assert_eq!(Poly::from_i64(&[0, -1, 1]).to_string(), "x^2 - x");
+        assert_eq!(Poly::zero().to_string(), "0");
+    }
+
+    #[test]
+    fn exact_quotients_keep_the_sign() {
+        let (p, d) = (Poly::from_i64(&[-6, 0, 6]), Poly::from_i64(&[2, -2]));
+        // (6x² − 6)/(−2x + 2) = −3x − 3, up to a positive factor.
+        assert_eq!(p.div_exact(&d), Some(Poly::from_i64(&[-1, -1])));
+        assert_eq!(
+            p.div_exact(&Poly::from_i64(&[-4])),
+            Some(Poly::from_i64(&[1, 0, -1]))
+        );
+        assert_eq!(p.div_exact(&Poly::from_i64(&[1, 2])), None);
+        assert_eq!(p.div_exact(&Poly::zero()), None);
+        assert_eq!(Poly::zero().div_exact(&p), Some(Poly::zero()));
+        assert_eq!(d.div_exact(&p), None);
+        assert_eq!(
+            Poly::from_rats(&[Rat::frac(-1, 6), Rat::frac(1, 4)]),
+            Poly::from_i64(&[-2, 3])
+        );
+    }
+}

@@ -504,10 +504,17 @@ impl Int {
         {
             return Interval::point(v as f64);
         }
+        self.interval_shifted(0)
+    }
+    /// Tightest double enclosure of self·2^k.
+    pub(crate) fn interval_shifted(&self, k: i64) -> Interval {
+        if self.is_zero() {
+            return Interval::point(0.0);
+        }
         let (q, shift, sticky) = self.top64();
         signed(
             self.sign(),
-            Rounded::new(q, sticky, shift as i64).enclosure(),
+            Rounded::new(q, sticky, shift as i64 + k).enclosure(),
         )
     }
 }

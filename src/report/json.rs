@@ -21,12 +21,15 @@ const WIDTH: usize = 110;
 #[schemars(title = "snapfit result")]
 pub struct ResultDocument {
     /// `snapfit.result/1`.
+    #[schemars(extend("enum" = ["snapfit.result/1"]))]
     pub schema: &'static str,
     /// Name of the scene.
     pub scene: String,
     /// Which arithmetic decided: `exact`, `filtered` or `f64`.
+    #[schemars(extend("enum" = ["exact", "filtered", "f64"]))]
     pub arithmetic: &'static str,
     /// Which algorithm ran: `naive` or `sweep`.
+    #[schemars(extend("enum" = ["naive", "sweep"]))]
     pub method: &'static str,
     /// The phases that ran.
     pub phases: Vec<PhaseDocument>,
@@ -53,6 +56,7 @@ pub struct PhaseDocument {
 #[schemars(rename = "Outcome")]
 pub struct OutcomeDocument {
     /// `completed`, `jammed`, `stuck`, `root-collision`, `bifurcated` or `undecided`.
+    #[schemars(extend("enum" = ["completed", "jammed", "stuck", "root-collision", "bifurcated", "undecided"]))]
     pub kind: &'static str,
     /// When.
     pub time: Num,
@@ -72,6 +76,7 @@ pub struct OutcomeDocument {
 #[schemars(rename = "Branch")]
 pub struct BranchDocument {
     /// `counter-clockwise` or `clockwise`.
+    #[schemars(extend("enum" = ["counter-clockwise", "clockwise"]))]
     pub direction: &'static str,
     /// What would drive the pawl that way.
     pub contacts: Vec<ContactDocument>,
@@ -114,6 +119,7 @@ pub enum Infinity {
 #[schemars(rename = "Event")]
 pub struct EventDocument {
     /// What.
+    #[schemars(extend("enum" = ["release", "graze", "translational-collision", "sliding-collision", "snap-free", "snap-free-vertex", "snap-landing", "limit-stop", "stick", "jam-incompatible", "jam-single", "bifurcation", "root-collision", "phase-end", "plan-end"]))]
     pub kind: &'static str,
     /// When.
     pub time: Num,
@@ -222,6 +228,7 @@ pub enum RootContactDocument {
 #[schemars(rename = "Segment")]
 pub struct SegmentDocument {
     /// `free` (θ = 0) or `sliding`.
+    #[schemars(extend("enum" = ["free", "sliding"]))]
     pub kind: &'static str,
     /// In which phase.
     pub phase: usize,
@@ -238,6 +245,7 @@ pub struct SegmentDocument {
     /// The curve that u = tan(θ/2) is on; null where it is free.
     pub curve: Option<CurveDocument>,
     /// The sign in u = (−B ± √(B² − 4AC))/(2A); where A = 0, `+` if B > 0 and `-` if B < 0; null where it is free.
+    #[schemars(extend("enum" = ["+", "-", null]))]
     pub branch: Option<&'static str>,
 }
 

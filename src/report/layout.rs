@@ -130,10 +130,11 @@ mod tests {
     fn the_same_value_in_other_clothes() {
         let compact = r#"{"a":[],"b":{},"c":"x:,{[\"é","d":[[1,2],[3,[4.5,null]]],"e":true}"#;
         for width in [0, 10, 20, 40, 200] {
-            let again: serde_json::Value = serde_json::from_str(&pretty(compact, width)).unwrap();
+            let again: serde_json::Value =
+                serde_json::from_str(&pretty(compact, width)).expect("JSON");
             assert_eq!(
                 again,
-                serde_json::from_str::<serde_json::Value>(compact).unwrap()
+                serde_json::from_str::<serde_json::Value>(compact).expect("JSON")
             );
         }
         assert!(!pretty(compact, 200).contains('\n'));

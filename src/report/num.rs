@@ -14,8 +14,9 @@ use std::collections::BTreeMap;
 pub struct Num {
     /// The nearest double, ties to even; null past the double range.
     pub value: Option<f64>,
-    /// The number itself.
-    pub exact: Exact,
+    /// The number itself; left out where doubles decided.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<Exact>,
 }
 
 /// An exact real number.
@@ -42,9 +43,9 @@ impl Num {
     pub fn of_rat(r: &Rat) -> Num {
         Num {
             value: r.nearest_f64(),
-            exact: Exact::Rational {
+            exact: Some(Exact::Rational {
                 rational: r.to_string(),
-            },
+            }),
         }
     }
     /// An algebraic number. Costs its minimal polynomial.
@@ -56,14 +57,14 @@ impl Num {
         let polynomial = x.minimal_polynomial();
         Num {
             value: x.nearest_f64(),
-            exact: Exact::Root {
+            exact: Some(Exact::Root {
                 polynomial: polynomial
                     .coeffs()
                     .iter()
                     .map(ToString::to_string)
                     .collect(),
                 interval: [lo.to_string(), hi.to_string()],
-            },
+            }),
         }
     }
     /// The double, for pictures and tables: infinite past the double range.

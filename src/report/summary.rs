@@ -39,13 +39,13 @@ pub fn summary(result: &ResultDocument, style: Style) -> String {
         let on = if on.is_empty() {
             String::new()
         } else {
-            format!(" on {}", on.join(", "))
+            format!(", driven by {}", on.join(", "))
         };
         let _ = writeln!(out, "  {}{on}{holds}", branch.direction);
     }
     for pawl in &result.pawls {
         out.push('\n');
-        out.push_str(&style.paint("1", &format!("pawl {}", pawl.name)));
+        out.push_str(&style.paint("1", &format!("pawl “{}”", pawl.name)));
         out.push('\n');
         out.push_str(&table(&pawl.events, style));
     }

@@ -49,8 +49,16 @@ pub(super) fn degrees(theta: f64) -> String {
 /// A number in a sentence: exactly if that is short, else to six digits.
 pub(super) fn short(n: &Num) -> String {
     match &n.exact {
-        Exact::Rational { rational } if rational.len() <= 7 => minus(rational),
+        Some(Exact::Rational { rational }) if rational.len() <= 7 => minus(rational),
         _ => format!("≈{}", approx(n)),
+    }
+}
+
+/// `= 7/2`, or `≈ 1.41421`.
+fn equals(n: &Num) -> String {
+    match short(n).strip_prefix('≈') {
+        Some(rounded) => format!("≈ {rounded}"),
+        None => format!("= {}", short(n)),
     }
 }
 
@@ -65,12 +73,13 @@ pub(super) fn approx(n: &Num) -> String {
 /// What a number exactly is, in a few columns.
 pub(super) fn exactly(n: &Num) -> String {
     match &n.exact {
-        Exact::Rational { rational } if rational.chars().count() <= 15 => minus(rational),
-        Exact::Rational { rational } => {
+        None => String::new(),
+        Some(Exact::Rational { rational }) if rational.len() <= 15 => minus(rational),
+        Some(Exact::Rational { rational }) => {
             let digits = rational.bytes().filter(u8::is_ascii_digit).count();
             format!("rational, {digits} digits")
         }
-        Exact::Root { polynomial, .. } => polynomial_text(polynomial)
+        Some(Exact::Root { polynomial, .. }) => polynomial_text(polynomial)
             .unwrap_or_else(|| format!("degree {}", polynomial.len() - 1)),
     }
 }
@@ -196,9 +205,9 @@ pub(super) fn headline(result: &ResultDocument) -> String {
         _ => "is undecided: a limit was reached",
     };
     format!(
-        "{} {verb} at t = {}{}, the root displaced by {}",
+        "{} {verb} at t {}{}, the root displaced by {}",
         result.scene,
-        short(&o.time),
+        equals(&o.time),
         in_phase(result, o),
         place(o)
     )
@@ -220,7 +229,7 @@ fn place(o: &OutcomeDocument) -> String {
 pub(super) fn reason(result: &ResultDocument) -> Option<String> {
     let o = &result.outcome;
     let cause = last_cause(result)?;
-    let who = o.pawl.as_deref().unwrap_or_default();
+    let who = format!("“{}”", o.pawl.as_deref().unwrap_or_default());
     let what = contacts(&cause.contacts);
     let theta = degrees(cause.theta);
     Some(match (o.kind, cause.kind) {

@@ -59,7 +59,7 @@ pub struct Feature {
 }
 
 /// Counts what a scene consists of and says what would be modelled. Besides the warnings of the
-/// reader there are those that cost more than reading: obstacles that overlap (one
+/// reader there are those on what is allowed but may be a slip: straight vertices, and obstacles that overlap (one
 /// [`interiors_intersect`] for every two obstacles whose boxes meet).
 pub fn check(file: &SceneFile) -> CheckReport {
     let scene = file.scene();
@@ -70,12 +70,17 @@ pub fn check(file: &SceneFile) -> CheckReport {
         .collect();
     let obstacle_edges = obstacles.iter().map(Polygon::len).sum();
     let obstacle_convex_vertices = obstacles.iter().map(convex_vertices).sum();
+    let bodies: Vec<Polygon> = scene
+        .pawls
+        .iter()
+        .map(|p| Polygon::new(p.vertices.clone(), Vec::new()))
+        .collect();
     let pawls: Vec<PawlReport> = scene
         .pawls
         .iter()
-        .map(|pawl| {
-            let body = Polygon::new(pawl.vertices.clone(), Vec::new());
-            let convex = convex_vertices(&body);
+        .zip(&bodies)
+        .map(|(pawl, body)| {
+            let convex = convex_vertices(body);
             PawlReport {
                 name: pawl.name.clone(),
                 edges: body.len(),
@@ -87,6 +92,12 @@ pub fn check(file: &SceneFile) -> CheckReport {
         .collect();
     let pairs: usize = pawls.iter().map(|p| p.type_a_pairs + p.type_b_pairs).sum();
     let mut warnings = file.warnings().to_vec();
+    for (k, body) in obstacles.iter().enumerate() {
+        warnings.extend(straight_vertices(file, body, &format!("obstacle.{k}")));
+    }
+    for (k, body) in bodies.iter().enumerate() {
+        warnings.extend(straight_vertices(file, body, &format!("pawl.{k}")));
+    }
     warnings.extend(overlapping_obstacles(file, &obstacles));
     warnings.extend(odd_forces(file));
     warnings.sort_by_key(Diagnostic::span);
@@ -157,6 +168,34 @@ fn features(scene: &Scene) -> Vec<Feature> {
             ),
         },
     ]
+}
+
+/// At most one warning a ring: for its first straight vertex.
+fn straight_vertices(file: &SceneFile, body: &Polygon, table: &str) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (ring, vertices) in body.rings().iter().enumerate() {
+        let mut straight =
+            (0..vertices.len()).filter(|&k| body.corner(ring, k) == Corner::Straight);
+        let Some(first) = straight.next() else {
+            continue;
+        };
+        let list = match ring {
+            0 => format!("{table}.vertices"),
+            hole => format!("{table}.holes.{}", hole - 1),
+        };
+        let more = match straight.count() {
+            0 => String::new(),
+            n => format!(" (and {n} more)"),
+        };
+        found.push(
+            file.warning_at(&format!("{list}.{first}"), "straight-vertex")
+                .message(format!(
+                    "vertex {first} lies in the middle of a straight edge{more}"
+                ))
+                .help("it changes nothing but the numbers of the edges"),
+        );
+    }
+    found
 }
 
 fn overlapping_obstacles(file: &SceneFile, obstacles: &[Polygon]) -> Vec<Diagnostic> {

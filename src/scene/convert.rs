@@ -4,13 +4,10 @@
 //! and the rest is still judged. Meaning (polygons, plans, starts) is `validate`'s.
 
 use super::diagnostic::Diagnostic;
-use super::read::{MAX_TOTAL_BITS, MAX_VERTICES};
 use super::source::{Sources, Span};
 use super::tree::{Kind, Node};
 use super::types::{Classify, Motion, Obstacle, Pawl, Root, Scene};
-use crate::geometry::Vec2;
 use crate::number::Rat;
-use crate::number::literal::{self, LiteralError, MAX_DIGITS, MAX_EXPONENT};
 
 /// The tables of the format and their keys: the one list that the reader, its suggestions and the
 /// schema's test go by. The table with the empty name is the file itself.
@@ -33,6 +30,9 @@ pub(crate) const TABLES: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// Most errors that are listed in one run.
+pub const MAX_ERRORS: usize = 100;
+
 /// A scene in the making: what could be read, where it stands, and what is wrong so far.
 pub(super) struct Conversion<'a> {
     pub(super) tree: &'a Node,
@@ -48,8 +48,10 @@ pub(super) struct Conversion<'a> {
     pub(super) classify: Option<Classify>,
     pub(super) errors: Vec<Diagnostic>,
     pub(super) warnings: Vec<Diagnostic>,
-    bits: u64,
-    vertices: usize,
+    /// Bits of all numbers so far, u64::MAX once the limit has been passed and said.
+    pub(super) bits: u64,
+    /// Vertices of all rings so far.
+    pub(super) vertices: usize,
 }
 
 impl<'a> Conversion<'a> {
@@ -100,7 +102,7 @@ impl<'a> Conversion<'a> {
         (scene, self.errors, self.warnings)
     }
 
-    /// Notes an error at a place.
+    /// Notes an error at a place, unless there are [`MAX_ERRORS`] already.
     pub(super) fn error(
         &mut self,
         span: Span,
@@ -108,6 +110,9 @@ impl<'a> Conversion<'a> {
         message: impl Into<String>,
         help: impl Into<String>,
     ) {
+        if self.errors.len() >= MAX_ERRORS {
+            return;
+        }
         self.errors.push(
             Diagnostic::error(self.sources, span, code)
                 .message(message)
@@ -134,6 +139,7 @@ impl<'a> Conversion<'a> {
 
     fn scene_section(&mut self) {
         match self.tree.get("scene") {
+            None if misspelt(self.tree, "scene") => {}
             None => self.error(
                 self.tree.span,
                 "missing-key",
@@ -177,7 +183,7 @@ impl<'a> Conversion<'a> {
                 return Vec::new();
             }
         };
-        if items.is_empty() {
+        if items.is_empty() && (node.is_some() || !misspelt(self.tree, key)) {
             self.error(
                 node.unwrap_or(self.tree).span,
                 none,
@@ -328,7 +334,7 @@ impl<'a> Conversion<'a> {
             .find(|(table, _)| *table == name)
             .map_or(&[] as &[&str], |(_, keys)| keys);
         for entry in entries {
-            if !keys.contains(&entry.key.as_str()) {
+            if !keys.contains(&entry.key.as_str()) && self.errors.len() < MAX_ERRORS {
                 let place = match name {
                     "" => "at the top of a scene".to_owned(),
                     _ => format!("in `{name}`"),
@@ -352,6 +358,7 @@ impl<'a> Conversion<'a> {
     ) -> Option<T> {
         match table.get(key) {
             Some(node) => read(self, node),
+            None if misspelt(table, key) => None,
             None => {
                 self.error(
                     table.span,
@@ -378,168 +385,7 @@ impl<'a> Conversion<'a> {
     ) -> Option<T> {
         table.get(key).and_then(|node| read(self, node))
     }
-
-    fn wrong_type(&mut self, node: &Node, wanted: &str, help: &str) {
-        self.error(
-            node.span,
-            "wrong-type",
-            format!("expected {wanted}, found {}", node.describe()),
-            help,
-        );
-    }
-
-    fn string(&mut self, node: &'a Node) -> Option<String> {
-        match &node.kind {
-            Kind::String(s) => Some(s.clone()),
-            _ => {
-                self.wrong_type(node, "a string", "put it in double quotes");
-                None
-            }
-        }
-    }
-
-    fn boolean(&mut self, node: &'a Node) -> Option<bool> {
-        match &node.kind {
-            Kind::Bool(b) => Some(*b),
-            _ => {
-                self.wrong_type(node, "true or false", "without quotes");
-                None
-            }
-        }
-    }
-
-    fn number(&mut self, node: &'a Node) -> Option<Rat> {
-        let text = match &node.kind {
-            Kind::String(s) | Kind::Number(s) => s,
-            _ => {
-                self.wrong_type(
-                    node,
-                    "a number",
-                    "a number is written \"3\", \"-0.125\", \"1e-30\", \"22/7\" or 3",
-                );
-                return None;
-            }
-        };
-        match literal::parse(text) {
-            Ok(value) => {
-                self.bits = self
-                    .bits
-                    .saturating_add(value.numer().bits())
-                    .saturating_add(value.denom().bits());
-                if self.bits <= MAX_TOTAL_BITS {
-                    return Some(value);
-                }
-                // Said once: the first number past the limit.
-                if self.bits != u64::MAX {
-                    self.bits = u64::MAX;
-                    self.error(
-                        node.span,
-                        "number-too-large",
-                        format!("up to here the scene's numbers have more than {MAX_TOTAL_BITS} bits together"),
-                        "use fewer digits or smaller exponents",
-                    );
-                }
-                None
-            }
-            Err(error) => {
-                self.bad_number(node.span, text, &error);
-                None
-            }
-        }
-    }
-
-    fn bad_number(&mut self, span: Span, text: &str, error: &LiteralError) {
-        let shown = clip(text);
-        let (code, message, help) = match error {
-            LiteralError::Malformed => (
-                "malformed-number",
-                format!("`{shown}` is not a number of this format"),
-                "write [+-]digits[.digits][e[+-]digits] or integer/integer, without blanks, underscores, hex, inf or nan".to_owned(),
-            ),
-            LiteralError::BadDenominator => (
-                "bad-denominator",
-                format!("the denominator of `{shown}` is not positive"),
-                "put the sign in front, and divide by a positive integer".to_owned(),
-            ),
-            LiteralError::TooManyDigits => (
-                "number-too-large",
-                format!("`{shown}` has too many digits"),
-                format!("at most {MAX_DIGITS} digits are read"),
-            ),
-            LiteralError::ExponentTooLarge => (
-                "number-too-large",
-                format!("the exponent of `{shown}` is too large"),
-                format!("exponents go up to {MAX_EXPONENT} in size"),
-            ),
-        };
-        self.error(span, code, message, help);
-    }
-
-    /// Two numbers in an array.
-    fn pair(&mut self, node: &'a Node) -> Option<(Rat, Rat)> {
-        match &node.kind {
-            Kind::Array(items) if items.len() == 2 => {
-                let first = self.number(&items[0]);
-                let second = self.number(&items[1]);
-                Some((first?, second?))
-            }
-            Kind::Array(items) => {
-                let message = format!("expected two numbers, found {}", items.len());
-                self.error(node.span, "wrong-type", message, PAIR_HELP);
-                None
-            }
-            _ => {
-                self.wrong_type(node, "two numbers", PAIR_HELP);
-                None
-            }
-        }
-    }
-
-    fn point(&mut self, node: &'a Node) -> Option<Vec2> {
-        self.pair(node).map(|(x, y)| Vec2::new(x, y))
-    }
-
-    fn ring(&mut self, node: &'a Node) -> Option<Vec<Vec2>> {
-        if let Kind::Array(items) = &node.kind {
-            let before = self.vertices;
-            self.vertices += items.len();
-            if self.vertices > MAX_VERTICES {
-                if before <= MAX_VERTICES {
-                    self.error(
-                        node.span,
-                        "too-many-vertices",
-                        format!("up to here the scene has more than {MAX_VERTICES} vertices"),
-                        "simplify the polygons",
-                    );
-                }
-                return None;
-            }
-        }
-        self.list(node, "a list of vertices", Self::point)
-    }
-
-    /// An array; None if any of its items cannot be read.
-    fn list<T>(
-        &mut self,
-        node: &'a Node,
-        wanted: &str,
-        read: fn(&mut Self, &'a Node) -> Option<T>,
-    ) -> Option<Vec<T>> {
-        match &node.kind {
-            Kind::Array(items) => {
-                // Not collected straight into an Option: every item is to be judged.
-                let read: Vec<Option<T>> = items.iter().map(|item| read(self, item)).collect();
-                read.into_iter().collect()
-            }
-            _ => {
-                self.wrong_type(node, wanted, "put it in square brackets");
-                None
-            }
-        }
-    }
 }
-
-const PAIR_HELP: &str = "write [\"x\", \"y\"]";
 
 /// What to add where a key is missing.
 const EXAMPLES: &[(&str, &str)] = &[
@@ -566,15 +412,32 @@ fn default_start(limits: Option<&(Rat, Rat)>) -> Rat {
 
 /// What an unknown key may have been meant to be.
 fn suggestion(key: &str, known: &[&str]) -> String {
+    match nearest(key, known) {
+        Some(meant) => format!("did you mean `{meant}`?"),
+        None => format!("the keys here are: {}", known.join(", ")),
+    }
+}
+
+/// The known key that an unknown one is a slip of, if it looks like one.
+fn nearest<'k>(key: &str, known: &[&'k str]) -> Option<&'k str> {
     let key = clip(key).to_lowercase();
-    let nearest = known
+    let (distance, meant) = known
         .iter()
-        .map(|k| (strsim::osa_distance(&key, k), k))
-        .min_by_key(|(distance, _)| *distance);
-    match nearest {
-        // A plural, a slip or two: more than that is another word.
-        Some((distance, k)) if distance <= 1 + k.len() / 4 => format!("did you mean `{k}`?"),
-        _ => format!("the keys here are: {}", known.join(", ")),
+        .map(|k| (strsim::osa_distance(&key, k), *k))
+        .min_by_key(|(distance, _)| *distance)?;
+    // A plural, a slip or two: more than that is another word.
+    (distance <= 1 + meant.len() / 4).then_some(meant)
+}
+
+/// Whether a table has a key that is a slip of this one: then its absence needs no message.
+pub(super) fn misspelt(table: &Node, key: &str) -> bool {
+    match &table.kind {
+        // Only a file that means harm has more keys than the first few.
+        Kind::Table(entries) => entries
+            .iter()
+            .take(MAX_ERRORS)
+            .any(|e| nearest(&e.key, &[key]).is_some()),
+        _ => false,
     }
 }
 

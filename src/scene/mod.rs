@@ -5,7 +5,7 @@
 //! 1. **Text to tree** (`tree`, `toml`, `json`): both notations become one tree whose every
 //!    key and value knows its place in the text, and whose numbers are still text. `--set`
 //!    (`overrides`) changes the tree, so an override is checked as if it stood in the file.
-//! 2. **Tree to scene** (`convert`): shapes and types. One list of known keys
+//! 2. **Tree to scene** (`convert`, `values`): shapes and types. One list of known keys
 //!    (`convert::TABLES`) serves the reader, its suggestions and the test of the schema.
 //! 3. **Scene to sense** (`validate`): polygons that are polygons, plans that can run, nothing
 //!    that starts inside something else.
@@ -29,7 +29,7 @@
 //! "#;
 //! let file = snapfit::scene::read_scene("latch.toml", text).unwrap();
 //! assert_eq!(file.scene().pawls[0].name, "tip");
-//! let refused = snapfit::scene::read_scene("latch.toml", &text.replace("duration", "time"));
+//! let refused = snapfit::scene::read_scene("latch.toml", &text.replace("duration", "durration"));
 //! assert_eq!(refused.unwrap_err()[0].code(), "unknown-key");
 //! ```
 
@@ -46,9 +46,11 @@ mod toml;
 mod tree;
 mod types;
 mod validate;
+mod values;
 mod write;
 
 pub use check::{CheckReport, Feature, PawlReport, check};
+pub use convert::MAX_ERRORS;
 pub use diagnostic::{CODES, Diagnostic, Rendering, SceneError, Severity};
 pub use overrides::apply_overrides;
 pub use read::{

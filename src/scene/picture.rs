@@ -62,10 +62,10 @@ impl miette::Diagnostic for Picture<'_> {
         // An underline over many lines helps nobody: it ends with the first.
         let span = self.diagnostic.span();
         let line_end = self.source.line_range(span.start).end;
-        let window_end = window_around(self.source.text(), span.start).1;
+        let start = span.start.min(line_end);
+        let window_end = window_around(self.source.text(), start).1;
         let end = span.end.min(line_end).min(window_end);
-        let length = end.saturating_sub(span.start);
-        let label = LabeledSpan::new(None, span.start, length);
+        let label = LabeledSpan::new(None, start, end.saturating_sub(start));
         Some(Box::new(std::iter::once(label)))
     }
 }

@@ -4,6 +4,8 @@
 //! may be left out is optional. Nothing is read through them, as they would forget the places and
 //! the text of numbers; a test holds their keys against those of the reader.
 
+#![allow(dead_code, reason = "only the schemas of these types are used")]
+
 use schemars::transform::transform_subschemas;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::Value;
@@ -44,7 +46,6 @@ fn without_null(schema: &mut Schema) {
 }
 
 /// An exact number: text that is read exactly, or a bare literal.
-#[allow(dead_code, reason = "only its schema is used")]
 struct Number;
 
 impl JsonSchema for Number {
@@ -68,14 +69,12 @@ type Point = [Number; 2];
 /// A simple polygon by its vertices, in either sense, closed implicitly.
 #[derive(JsonSchema)]
 #[schemars(transparent)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct Ring(#[schemars(length(min = 3))] Vec<Point>);
 
 /// A scene for snapfit: fixed obstacles, pawls on torsional springs, and a plan along which the
 /// root carries them.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 pub struct SceneDocument {
     scene: SceneSection,
     /// Fixed bodies; they may touch or overlap each other.
@@ -96,7 +95,6 @@ pub struct SceneDocument {
 /// The scene as a whole.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct SceneSection {
     /// Name of the scene.
     name: String,
@@ -107,7 +105,6 @@ struct SceneSection {
 /// A fixed body.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct ObstacleTable {
     /// Name, unique among the obstacles.
     name: String,
@@ -120,7 +117,6 @@ struct ObstacleTable {
 /// The root body.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct RootSection {
     /// Drawn at time 0.
     vertices: Ring,
@@ -131,7 +127,6 @@ struct RootSection {
 /// A pawl on a torsional spring, at rest as drawn.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct PawlTable {
     /// Name, unique among the pawls.
     name: String,
@@ -150,7 +145,6 @@ struct PawlTable {
 /// One phase of the plan.
 #[derive(JsonSchema)]
 #[serde(untagged)]
-#[allow(dead_code, reason = "only its schema is used")]
 enum MotionTable {
     /// A translation for a duration.
     Timed(TimedMotion),
@@ -163,7 +157,6 @@ enum MotionTable {
 /// A translation for a duration, or until the root collides if that is earlier.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct TimedMotion {
     /// Velocity of the root, not zero.
     velocity: Point,
@@ -176,7 +169,6 @@ struct TimedMotion {
 /// A translation until the root collides.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct RootCollisionMotion {
     /// Velocity of the root, not zero.
     velocity: Point,
@@ -187,7 +179,6 @@ struct RootCollisionMotion {
 /// Back along the phase before, at its speed, for as long as it really lasted.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct ReverseMotion {
     /// Always true.
     #[schemars(extend("const" = true))]
@@ -197,7 +188,6 @@ struct ReverseMotion {
 /// What ends a phase besides its duration.
 #[derive(JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-#[allow(dead_code, reason = "only its schema is used")]
 enum Until {
     /// The root collides with an obstacle.
     RootCollision,
@@ -206,7 +196,6 @@ enum Until {
 /// What `classify` is asked.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
-#[allow(dead_code, reason = "only its schema is used")]
 struct ClassifySection {
     /// The control family, none of them zero. Left out: the reverse of the plan's last phase that
     /// is no reverse.

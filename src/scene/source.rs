@@ -35,10 +35,12 @@ impl Source {
     }
 
     /// Line and column of a byte offset, both from 1, the column in characters. An offset past
-    /// the end is the end; one inside a character is that character.
+    /// the end is the end; one inside a character is that character; one inside a line end of two
+    /// characters is that line end.
     pub fn line_column(&self, offset: usize) -> (usize, usize) {
         let line = self.lines.partition_point(|&start| start <= offset);
         let start = self.lines[line - 1];
+        let offset = offset.min(self.line_range(offset).end);
         let before = self.text[start..]
             .char_indices()
             .take_while(|(at, c)| start + at + c.len_utf8() <= offset)

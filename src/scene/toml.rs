@@ -25,7 +25,7 @@ pub(super) fn read(sources: &Sources, index: usize) -> Result<Node, Vec<Diagnost
             diagnostics.retain(|d| d.code() != "duplicate-key");
         }
         diagnostics.sort_by_key(|d| d.span().start);
-        diagnostics.dedup_by(|a, b| a.span().start == b.span().start);
+        diagnostics.dedup_by_key(|d| d.line());
         return Err(diagnostics);
     }
     let place = |range: Range<usize>| Span {

@@ -1,14 +1,14 @@
 //! From scene to sense: what can be read may still be no polygon, no plan, or start inside
 //! something else. Each rule is one function; its place in the file is found by path.
 
-use super::convert::{Conversion, clip};
+use super::convert::{Conversion, clip, misspelt};
 use super::source::Span;
 use super::tree::{Kind, Node};
 use super::types::{Motion, Pawl};
 use crate::geometry::Vec2;
-use crate::geometry::{Corner, Defect, EdgeRef, Meeting, Polygon, defects, interiors_intersect};
+use crate::geometry::{Defect, EdgeRef, Meeting, Polygon, defects, interiors_intersect};
 use crate::number::Rat;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Judges all that was read. Adds to the errors and warnings of the conversion.
 pub(super) fn scene(c: &mut Conversion<'_>) {
@@ -77,8 +77,9 @@ fn names(c: &mut Conversion<'_>) {
             }
         }
     }
+    let taken: HashSet<&String> = obstacles.iter().map(|(_, name)| name).collect();
     for (k, name) in &pawls {
-        if obstacles.iter().any(|(_, other)| other == name) {
+        if taken.contains(name) {
             c.warning(
                 place(c, "pawl", *k, "name"),
                 "shared-name",
@@ -148,9 +149,6 @@ fn proper(c: &mut Conversion<'_>, polygon: &Polygon, table: &str) -> bool {
     for defect in &found {
         let (span, code, message, help) = explain(defect, &rings);
         c.error(span, code, message, help);
-    }
-    if found.is_empty() {
-        straight_vertices(c, polygon, &rings);
     }
     found.is_empty()
 }
@@ -278,26 +276,6 @@ fn show(p: &Vec2) -> String {
     format!("({}, {})", number(&p.x), number(&p.y))
 }
 
-fn straight_vertices(c: &mut Conversion<'_>, polygon: &Polygon, rings: &RingPlaces<'_>) {
-    for (ring, vertices) in polygon.rings().iter().enumerate() {
-        let straight: Vec<usize> = (0..vertices.len())
-            .filter(|&k| polygon.corner(ring, k) == Corner::Straight)
-            .collect();
-        if let Some(first) = straight.first() {
-            let more = match straight.len() {
-                1 => String::new(),
-                n => format!(" (and {} more)", n - 1),
-            };
-            c.warning(
-                rings.vertex(ring, *first),
-                "straight-vertex",
-                format!("vertex {first} lies in the middle of a straight edge{more}"),
-                "it changes nothing; contacts name the edge on its either side",
-            );
-        }
-    }
-}
-
 fn pawls(c: &mut Conversion<'_>) {
     for k in 0..c.pawls.len() {
         let Some(pawl) = c.pawls[k].clone() else {
@@ -371,7 +349,11 @@ fn motions(c: &mut Conversion<'_>) {
                 }
                 // A key that is there but could not be read has its own message.
                 let table = c.tree.find(&format!("motion.{k}")).unwrap_or(c.tree);
-                if table.get("duration").is_none() && table.get("until").is_none() {
+                let ends = ["duration", "until"];
+                if !ends
+                    .iter()
+                    .any(|key| table.get(key).is_some() || misspelt(table, key))
+                {
                     c.error(
                         table.span,
                         "endless-motion",

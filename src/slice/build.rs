@@ -1,7 +1,9 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
 use super::{Arc, ArcId, Curve, CurveId, End, Shape, Side, Time};
-use crate::contact::{Chart, Contact, Frame, ObstacleShape, Patch, PawlShape, Trig, patches};
+use crate::contact::{
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
+};
 use crate::geometry::Vec2;
 use crate::number::{Algebraic, Int, Interval, Poly, Rat};
 use std::collections::HashMap;
@@ -88,15 +90,17 @@ struct Named {
 #[derive(PartialEq, Eq, Hash)]
 enum Name {
     /// A pawl vertex on an obstacle vertex, both by their coordinates.
-    VertexVertex(Vec2, Vec2, Chart),
+    VertexVertex(Box<(Vec2, Vec2)>, Chart),
     /// A pawl edge flush on an obstacle edge, both by their supporting lines.
     Flush(u32, u32, Chart),
     /// A vertical tangency of a curve.
     Tangency(CurveId, Chart),
 }
 
-struct Builder {
+struct Builder<'a> {
     frame: Frame,
+    pawl: &'a PawlShape,
+    obstacles: &'a [ObstacleShape],
     curves: Vec<Curve>,
     curve_ids: HashMap<[Int; 6], CurveId>,
     arcs: Vec<Arc>,
@@ -216,8 +220,8 @@ fn in_chart(c: &[Int; 3], chart: Chart) -> Poly {
     }
 }
 
-impl Builder {
-    fn new(frame: Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> Builder {
+impl<'a> Builder<'a> {
+    fn new(frame: Frame, pawl: &'a PawlShape, obstacles: &'a [ObstacleShape]) -> Builder<'a> {
         let pawl_lines = number_lines(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
         let obstacle_lines = number_lines(
             obstacles
@@ -228,6 +232,8 @@ impl Builder {
         let speed2 = frame.v.norm2();
         Builder {
             frame,
+            pawl,
+            obstacles,
             curves: Vec::new(),
             curve_ids: HashMap::new(),
             arcs: Vec::new(),
@@ -273,7 +279,7 @@ impl Builder {
         if a.is_zero() {
             return Rc::new([]);
         }
-        let key = Name::VertexVertex(a.clone(), q.clone(), chart);
+        let key = Name::VertexVertex(Box::new((a.clone(), q.clone())), chart);
         let w = q - &self.frame.p0;
         let v = self.frame.v.clone();
         let list = self.named_roots(key, || {
@@ -432,7 +438,8 @@ impl Builder {
             });
         }
         self.plain_breaks(rq, &mut breaks);
-        if rq.degree() != q.degree() || rp.degree() != p.degree() {
+        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
+        if factored {
             self.plain_breaks(&if p.is_zero() { q.clone() } else { p.gcd(q) }, &mut breaks);
         }
         self.seams(&mut breaks);
@@ -454,9 +461,10 @@ impl Builder {
             let up = bend_sign * f1;
             let end = |b: &Break| {
                 let t = || Time::ratio(&b.x, -rp, rq.clone());
+                // A name may lie on the curve's level instead, at another time.
                 let t = match &b.point {
-                    Some(n) => n.t.get_or_init(t).clone(),
-                    None => t(),
+                    Some(n) if !factored => n.t.get_or_init(t).clone(),
+                    _ => t(),
                 };
                 End { x: b.x.clone(), t }
             };
@@ -590,12 +598,19 @@ impl Builder {
         let c = -Rat::new(rp.coeff(0), rq.coeff(0));
         let at = |(l0, l1): &(Trig, Trig)| l0.add(&l1.scale(&c));
         let location = [at(&patch.location[0]), at(&patch.location[1])];
+        let (mine, theirs) = self.cones_at_hinge(patch, &c);
         let mut breaks = Vec::new();
         self.wedge_breaks(patch, chart, &mut breaks);
         for l in &location {
             self.plain_breaks(&l.poly(chart), &mut breaks);
         }
-        self.plain_breaks(&patch.f1.poly(chart), &mut breaks);
+        // Where a pawl edge lies along an obstacle edge, or along the motion.
+        for g in mine.generators() {
+            for o in theirs.generators().chain([&self.frame.v]) {
+                let cross = Trig::new(g.cross(o), -g.dot(o), Rat::zero());
+                self.plain_breaks(&cross.poly(chart), &mut breaks);
+            }
+        }
         self.seams(&mut breaks);
         breaks.sort_by(|a, b| a.x.cmp(&b.x));
         breaks.dedup_by(|b, a| a.x == b.x);
@@ -606,7 +621,18 @@ impl Builder {
             {
                 continue;
             }
-            let growing = patch.f1.value(chart, &s).sign() > 0;
+            let turned = mine.map(|g| {
+                let g = g.rotate_tan_half(&s);
+                if chart == Chart::Back { -&g } else { g }
+            });
+            let v = &self.frame.v;
+            let (before, after) = (turned.overlap(&-v, &theirs), turned.overlap(v, &theirs));
+            let side = match (before, after) {
+                (false, true) => Side::Before,
+                (true, false) => Side::After,
+                (false, false) => Side::Both,
+                (true, true) => Side::Neither,
+            };
             let end = |b: &Break| End {
                 x: b.x.clone(),
                 t: t.clone(),
@@ -618,7 +644,7 @@ impl Builder {
                     curve,
                     branch: 0,
                     shape: Shape::Wall,
-                    side: if growing { Side::After } else { Side::Before },
+                    side,
                     lo: end(&w[0]),
                     hi: end(&w[1]),
                     t_span: Interval::all(),
@@ -626,6 +652,46 @@ impl Builder {
                 }
                 .with_spans(),
             );
+        }
+    }
+
+    /// The pawl and the obstacle beside the hinge, at θ = 0, when a wall's contact is made at time
+    /// c. Past a corner of the obstacle the hinge may be free on both sides of its edge's line, so
+    /// the C-function's sign alone does not tell.
+    fn cones_at_hinge(&self, patch: &Patch, c: &Rat) -> (Cones, Cones) {
+        let Contact::Obstacle {
+            obstacle,
+            kind,
+            ring,
+            obstacle_feature,
+            pawl_feature,
+        } = patch.contact
+        else {
+            unreachable!("limit stops are no walls")
+        };
+        let body = &self.pawl.ring;
+        let fixed = &self.obstacles[obstacle as usize].rings[ring as usize];
+        let (i, j) = (pawl_feature as usize, obstacle_feature as usize);
+        match kind {
+            ContactKind::B => {
+                let p = &self.frame.p0 + &self.frame.v.scale(c);
+                let at = |k: usize| (fixed.vertices[k] == p).then(|| Cones::at_vertex(fixed, k));
+                let theirs = at(j)
+                    .or_else(|| at(fixed.next(j)))
+                    .unwrap_or_else(|| Cones::at_edge(fixed, j));
+                (Cones::at_vertex(body, i), theirs)
+            }
+            ContactKind::A => {
+                let at = |k: usize| {
+                    body.vertices[k]
+                        .is_zero()
+                        .then(|| Cones::at_vertex(body, k))
+                };
+                let mine = at(i)
+                    .or_else(|| at(body.next(i)))
+                    .unwrap_or_else(|| Cones::at_edge(body, i));
+                (mine, Cones::at_vertex(fixed, j))
+            }
         }
     }
 

@@ -12,7 +12,7 @@ use std::time::Duration;
     max_term_width = 100,
     after_help = "\
 Exit status: 0 decided (a jam is a result), 2 bad usage or bad input, 3 undecided within the limits\n\
-given, 1 a bug."
+given, 4 decided but not as --expect says, 1 a bug."
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -25,8 +25,18 @@ pub(crate) enum Verb {
     Simulate(Simulate),
     /// Validate a scene and say what would be modelled
     Check(Check),
+    /// Say what locks it, and how firmly: the motion-diode class
+    Classify(Classify),
+    /// Enclose the contact forces and torques, and their peaks
+    Forces(Forces),
     /// Draw the mechanism at its events, and its angles over time
     Render(Render),
+    /// The face of bare arcs that holds the start
+    Face(snapfit::face::Args),
+    /// Solve a linear program exactly: status, objective and certificate
+    Lp(snapfit::lp::cli::LpArgs),
+    /// Check a linear program's certificate with code of its own
+    Verify(snapfit::lp::cli::VerifyArgs),
     /// Print the JSON Schema of a file format
     Schema(Schema),
 }
@@ -49,6 +59,29 @@ pub(crate) struct Simulate {
     /// What to print [default: summary on a terminal, else json]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
+}
+
+#[derive(Args)]
+pub(crate) struct Classify {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// Exit with status 4 unless the class is this one: none, force, friction or kinematic; with
+    /// total- before it, unless it is total too
+    #[arg(long, value_name = "CLASS")]
+    pub(crate) expect: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct Forces {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(flatten)]
+    pub(crate) engine: Engine,
+    /// Significant digits of every enclosure
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) digits: u32,
 }
 
 #[derive(Args)]

@@ -2,15 +2,19 @@
 //!
 //! Standard output carries the result, standard error everything else. The exit status says what
 //! became of the question: 0 decided, 2 bad usage or bad input, 3 undecided within the limits
-//! given, 1 a bug.
+//! given, 4 decided but not as expected, 1 a bug.
 
 mod args;
 mod output;
 mod progress;
 
-use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render, Simulate, Verb};
+use args::{
+    Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
+    Simulate, Verb,
+};
 use clap::Parser;
 use clap::error::ErrorKind;
+use snapfit::analysis::{self, Ask, Verdict};
 use snapfit::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
 use snapfit::report::{picture, pretty, summary};
@@ -24,6 +28,7 @@ const DECIDED: u8 = 0;
 const BUG: u8 = 1;
 const BAD: u8 = 2;
 const UNDECIDED: u8 = 3;
+const UNEXPECTED: u8 = 4;
 
 /// Why a verb gives no answer. All of it is the user's to mend, and ends in [`BAD`].
 enum Failure {
@@ -54,8 +59,18 @@ fn main() -> ExitCode {
 fn run(verb: &Verb) -> Result<u8, Failure> {
     match verb {
         Verb::Simulate(args) => run_simulate(args),
+        Verb::Classify(args) => run_classify(args),
+        Verb::Forces(args) => run_forces(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
+        Verb::Face(args) => {
+            let report = snapfit::face::run_cli(args)?;
+            let text = serde_json::to_string(&report).map_err(|e| e.to_string())?;
+            output::write(None, &(text + "\n"))?;
+            Ok(DECIDED)
+        }
+        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
@@ -77,6 +92,65 @@ fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
     };
     output::write(args.common.out.as_deref(), &text)?;
     Ok(status(&trajectory))
+}
+
+fn ask(engine: &Engine) -> Result<Ask, Failure> {
+    provenance(engine)?;
+    Ok(Ask {
+        deadline: engine
+            .time_limit
+            .and_then(|limit| Instant::now().checked_add(limit)),
+        critical: true,
+    })
+}
+
+fn run_classify(args: &Classify) -> Result<u8, Failure> {
+    let expected = match &args.expect {
+        None => None,
+        Some(word) => {
+            let class = word.strip_prefix("total-").unwrap_or(word);
+            let class = Verdict::from_name(class).ok_or_else(|| {
+                format!("--expect {word}: expected none, force, friction, kinematic, or total- and one of them")
+            })?;
+            Some((class.name(), word.starts_with("total-")))
+        }
+    };
+    let file = read(&args.common)?;
+    let document = analysis::classify(file.scene(), &ask(&args.engine)?)
+        .map_err(|error| misplanned(&file, &error))?;
+    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
+    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
+    if document.undecided() {
+        return Ok(UNDECIDED);
+    }
+    match expected {
+        Some((class, total))
+            if document.class != Some(class) || total && document.extent != Some("total") =>
+        {
+            let extent = document.extent.unwrap_or("no");
+            let class = document.class.unwrap_or("no class");
+            let _ = writeln!(
+                std::io::stderr(),
+                "snapfit: not as expected: {class}, {extent} diode; {}",
+                document.reason
+            );
+            Ok(UNEXPECTED)
+        }
+        _ => Ok(DECIDED),
+    }
+}
+
+fn run_forces(args: &Forces) -> Result<u8, Failure> {
+    let file = read(&args.common)?;
+    let document = analysis::forces(file.scene(), args.digits, &ask(&args.engine)?)
+        .map_err(|error| misplanned(&file, &error))?;
+    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
+    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
+    Ok(if document.outcome == OutcomeKind::Undecided.name() {
+        UNDECIDED
+    } else {
+        DECIDED
+    })
 }
 
 fn run_check(args: &Check) -> Result<u8, Failure> {
@@ -235,15 +309,25 @@ fn complain(failure: &Failure) {
     let _ = match failure {
         Failure::Message(message) => writeln!(stderr, "snapfit: {message}"),
         Failure::Scene(diagnostics) => {
-            let rendering = match std::io::stderr().is_terminal() {
-                false => Rendering::Plain,
-                true if colour_on(true) => Rendering::Colour,
-                true => Rendering::Unicode,
-            };
-            let all: String = diagnostics.iter().map(|d| d.render(rendering)).collect();
+            let all: String = diagnostics.iter().map(told).collect();
             stderr.write_all(all.as_bytes())
         }
     };
+}
+
+/// A diagnostic: with a picture of the place on a terminal, else a line that tools understand.
+fn told(d: &Diagnostic) -> String {
+    if std::io::stderr().is_terminal() {
+        return d.render(if colour_on(true) {
+            Rendering::Colour
+        } else {
+            Rendering::Unicode
+        });
+    }
+    match d.advice() {
+        Some(advice) => format!("{d}\n  help: {advice}\n"),
+        None => format!("{d}\n"),
+    }
 }
 
 /// What clap makes of the arguments: help, the version, or an error.

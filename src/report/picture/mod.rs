@@ -1,10 +1,11 @@
 //! Pictures: the mechanism at its events (as in DP Fig. 4), and θ over time, as one SVG file.
 //!
 //! A picture is drawn from the scene and the finished result document, in doubles: nothing here
-//! decides anything. [`stage`](self) turns both into shapes and curves, `panels` draws the small
-//! multiples, `plot` the histories; letters tie an instant of the one to the same instant of the
+//! decides anything. `stage` turns both into shapes and curves, `panels` draws the small
+//! multiples (`names` finds room for the obstacles' names), `plot` the histories; letters tie an instant of the one to the same instant of the
 //! other.
 
+mod names;
 mod panels;
 mod plot;
 mod stage;
@@ -45,7 +46,13 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
     y += 20.0;
     y = panels::draw(&mut page, &stage, &moments, [MARGIN, y, inner]);
     y += 26.0;
-    y = plot::draw(&mut page, &stage, result, &moments, [MARGIN, y, inner]);
+    y = plot::draw(
+        &mut page,
+        &stage,
+        result,
+        &moments.chosen,
+        [MARGIN, y, inner],
+    );
     page.finish(WIDTH, y + MARGIN, &result.scene, &headline(result))
 }
 

@@ -4,11 +4,13 @@
 //! the plane and the mechanism moves through it; if they travel far, the window travels along.
 
 use super::fit;
+use super::names::Names;
 use super::plot::nice_step;
 use super::stage::Stage;
 use super::svg::{CONTACT, INK, MUTED, Point, RULE, Svg, clipped};
 use crate::report::json::{EventDocument, ResultDocument};
 use crate::report::words::digits;
+use std::collections::BTreeMap;
 
 /// Most panels that are drawn.
 const MOST: usize = 16;
@@ -36,12 +38,24 @@ pub(super) struct Moment {
     touching: Vec<Point>,
     left: Vec<Point>,
     captions: Vec<String>,
+    /// Whether the motion comes to grief here.
+    ends: bool,
+}
+
+/// The weight of what ends a motion.
+const GRIEF: u32 = 7;
+
+/// The instants that are drawn, and of how many.
+pub(super) struct Moments {
+    pub(super) chosen: Vec<Moment>,
+    of: usize,
 }
 
 /// How much an event deserves a panel.
 fn weight(kind: &str) -> u32 {
     match kind {
-        "jam-incompatible" | "jam-single" | "stick" | "bifurcation" | "root-collision" => 7,
+        "jam-incompatible" | "jam-single" | "stick" | "bifurcation" => GRIEF,
+        "root-collision" => 6,
         "snap-free" | "snap-free-vertex" => 6,
         "translational-collision" | "snap-landing" => 5,
         "sliding-collision" | "release" | "limit-stop" => 4,
@@ -51,43 +65,71 @@ fn weight(kind: &str) -> u32 {
     }
 }
 
+/// Events of one instant, with the index of their pawl.
+struct Group<'a> {
+    phase: usize,
+    t: f64,
+    weight: u32,
+    events: Vec<(usize, &'a EventDocument)>,
+}
+
 /// The instants to draw, in order, lettered.
-pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Vec<Moment> {
-    let mut groups: Vec<(usize, f64, u32, Vec<(usize, &EventDocument)>)> =
-        vec![(0, 0.0, 5, vec![])];
+pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Moments {
     let mut all: Vec<(usize, &EventDocument)> = Vec::new();
     for (i, pawl) in result.pawls.iter().enumerate() {
-        all.extend(pawl.events.iter().map(|e| (i, e)));
+        let drawn = pawl.events.iter().filter(|e| e.time.approx().is_finite());
+        all.extend(drawn.map(|e| (i, e)));
     }
-    all.sort_by(|a, b| {
-        let key = |e: &EventDocument| (e.phase, e.time.approx());
-        let (ka, kb) = (key(a.1), key(b.1));
-        ka.0.cmp(&kb.0).then(ka.1.total_cmp(&kb.1))
+    all.sort_by(|(_, a), (_, b)| {
+        let times = a.time.approx().total_cmp(&b.time.approx());
+        a.phase.cmp(&b.phase).then(times)
     });
+    let mut groups = vec![Group {
+        phase: 0,
+        t: 0.0,
+        weight: 5,
+        events: Vec::new(),
+    }];
     for (pawl, event) in all {
         let (phase, t) = (event.phase, event.time.approx());
-        if !t.is_finite() {
-            continue;
-        }
         match groups.last_mut() {
-            Some(g) if g.0 == phase && g.1 == t => {
-                g.2 = g.2.max(weight(event.kind));
-                g.3.push((pawl, event));
+            Some(g) if g.phase == phase && g.t == t => {
+                g.weight = g.weight.max(weight(event.kind));
+                g.events.push((pawl, event));
             }
-            _ => groups.push((phase, t, weight(event.kind), vec![(pawl, event)])),
+            _ => groups.push(Group {
+                phase,
+                t,
+                weight: weight(event.kind),
+                events: vec![(pawl, event)],
+            }),
         }
     }
-    let mut ranked: Vec<usize> = (0..groups.len()).filter(|&i| groups[i].2 > 0).collect();
-    ranked.sort_by_key(|&i| (std::cmp::Reverse(groups[i].2), i));
+    // The first of its kind tells more than the tenth.
+    let mut seen: BTreeMap<Vec<(usize, &str)>, i64> = BTreeMap::new();
+    let mut rank: Vec<i64> = Vec::new();
+    for g in &groups {
+        let kinds = g.events.iter().map(|(pawl, e)| (*pawl, e.kind)).collect();
+        let before = seen.entry(kinds).or_insert(0);
+        rank.push(4 * i64::from(g.weight) - 3 * *before);
+        *before += 1;
+    }
+    let mut ranked: Vec<usize> = (0..groups.len())
+        .filter(|&i| groups[i].weight > 0)
+        .collect();
+    let worth = ranked.len();
+    ranked.sort_by_key(|&i| (std::cmp::Reverse(rank[i]), i));
     ranked.truncate(MOST);
     ranked.sort_unstable();
     let chosen = ranked.into_iter().enumerate();
-    chosen
-        .map(|(k, i)| {
-            let (phase, t, _, events) = &groups[i];
-            moment(stage, result, letter(k), (*phase, *t), events)
-        })
-        .collect()
+    let chosen = chosen.map(|(k, i)| {
+        let g = &groups[i];
+        moment(stage, result, letter(k), (g.phase, g.t), &g.events)
+    });
+    Moments {
+        chosen: chosen.collect(),
+        of: worth,
+    }
 }
 
 fn letter(k: usize) -> String {
@@ -131,6 +173,7 @@ fn moment(
         touching,
         left,
         captions: captions(result, events),
+        ends: events.iter().any(|e| weight(e.1.kind) == GRIEF),
     }
 }
 
@@ -262,7 +305,7 @@ fn framed(w: Window) -> Window {
     dx += margin;
     dy += margin;
     dx = dx.max(0.62 * dy);
-    dy = dy.max(dx / 1.7);
+    dy = dy.max(dx / 2.2);
     [
         c[0] - dx / 2.0,
         c[1] - dy / 2.0,
@@ -275,10 +318,10 @@ fn framed(w: Window) -> Window {
 pub(super) fn draw(
     page: &mut Svg,
     stage: &Stage,
-    moments: &[Moment],
+    moments: &Moments,
     [x, y, width]: [f64; 3],
 ) -> f64 {
-    let windows = windows(stage, moments);
+    let windows = windows(stage, &moments.chosen);
     let Some(first) = windows.first() else {
         return y;
     };
@@ -295,35 +338,37 @@ pub(super) fn draw(
         );
         return y + 20.0;
     }
-    let (columns, w) = columns(moments.len(), dx / dy, width);
+    let (columns, w) = columns(moments.chosen.len(), dx / dy, width);
     let h = w * dy / dx;
     let scale = w / dx;
-    for (i, (m, window)) in moments.iter().zip(&windows).enumerate() {
+    for (i, (m, window)) in moments.chosen.iter().zip(&windows).enumerate() {
         let px = x + (i % columns) as f64 * (w + GAP);
         let py = y + (i / columns) as f64 * (h + CAPTION);
         panel(page, stage, m, window, [px, py, w, h]);
     }
-    let rows = moments.len().div_ceil(columns);
+    let rows = moments.chosen.len().div_ceil(columns);
     let below = y + rows as f64 * (h + CAPTION);
-    legend(page, stage, scale, [x, below + 6.0, dx]);
+    legend(page, stage, moments, scale, [x, below + 6.0, dx]);
     below + 22.0
 }
 
-/// How many columns, and how wide: about as high as a page would have it.
+/// How many columns, and how wide: a page about half as high as wide, few empty places.
 fn columns(count: usize, aspect: f64, width: f64) -> (usize, f64) {
-    let wide = |columns: usize| {
+    let column = |columns: usize| {
         let w = (width - (columns - 1) as f64 * GAP) / columns as f64;
-        (columns, w.min(330.0).min(330.0 * aspect.max(0.75)))
+        w.min(330.0).min(330.0 * aspect.max(0.75))
     };
-    let height = |c: usize| {
-        let rows = count.div_ceil(c) as f64;
-        rows * (wide(c).1 / aspect + CAPTION)
+    let badness = |columns: usize| {
+        let rows = count.div_ceil(columns);
+        let height = rows as f64 * (column(columns) / aspect + CAPTION);
+        let empty = (rows * columns - count) as f64 / columns as f64;
+        let blank = width - columns as f64 * (column(columns) + GAP);
+        (height - 0.5 * width).abs() + 0.45 * empty * width + 0.5 * blank
     };
-    let fits = (3..=6).min_by(|a, b| {
-        let off = |c: usize| (height(c) - 0.62 * width).abs();
-        off(*a).total_cmp(&off(*b))
-    });
-    wide(fits.unwrap_or(4).max(3))
+    let best = (3..=6)
+        .min_by(|a, b| badness(*a).total_cmp(&badness(*b)))
+        .unwrap_or(4);
+    (best, column(best))
 }
 
 fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64; 4]) {
@@ -346,32 +391,39 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
         |ring: &[Point]| -> Vec<Point> { clipped(ring, beyond).into_iter().map(put).collect() };
     page.rect(rect, "#fbfcfd", "none");
     page.clip(rect);
-    for (_, rings) in &stage.obstacles {
+    let mut names = Names::new(rect);
+    for (name, rings) in &stage.obstacles {
         let rings: Vec<Vec<Point>> = rings.iter().map(|r| placed(r)).collect();
         page.shape(
             &rings,
             "fill=\"#cfd6de\" stroke=\"#616e7c\" stroke-width=\"1\"",
         );
+        names.ask(name, rings);
     }
     let offset = stage.offset(m.phase, m.t);
     if let Some(root) = stage.root_at(offset) {
         let style = "fill=\"#eadfc4\" fill-opacity=\"0.8\" stroke=\"#8d7b4a\" stroke-width=\"1\"";
-        page.shape(&[placed(&root)], style);
+        let root = placed(&root);
+        page.shape(std::slice::from_ref(&root), style);
+        names.avoid(root);
     }
     for (i, (before, after)) in m.poses.iter().enumerate() {
         let c = colour(i);
         let now = placed(&stage.pawl_at(i, offset, after.unwrap_or(*before)));
         let style =
             format!("fill=\"{c}\" fill-opacity=\"0.32\" stroke=\"{c}\" stroke-width=\"1.5\"");
-        page.shape(&[now], &style);
+        page.shape(std::slice::from_ref(&now), &style);
+        names.avoid(now);
         if after.is_some() {
             let ghost = placed(&stage.pawl_at(i, offset, *before));
             let style = format!(
                 "fill=\"none\" stroke=\"{c}\" stroke-width=\"1.1\" stroke-dasharray=\"4 3\""
             );
-            page.shape(&[ghost], &style);
+            page.shape(std::slice::from_ref(&ghost), &style);
+            names.avoid(ghost);
         }
     }
+    names.write(page);
     for (i, pawl) in stage.pawls.iter().enumerate() {
         let hinge = put([pawl.hinge[0] + offset[0], pawl.hinge[1] + offset[1]]);
         page.circle(hinge, 3.6, "#ffffff", colour(i), 1.4);
@@ -384,7 +436,7 @@ fn panel(page: &mut Svg, stage: &Stage, m: &Moment, window: &Window, rect: [f64;
         page.circle(put(*p), 3.4, CONTACT, "#ffffff", 0.8);
     }
     page.end();
-    page.rect(rect, "none", RULE);
+    page.rect(rect, "none", if m.ends { CONTACT } else { RULE });
     travel(page, stage, m.phase, [px, py]);
     let head = format!("({}) t = {}", m.letter, digits(m.t, 6));
     page.text(px, py + h + 15.0, 12.0, INK, "start", true, &head);
@@ -426,7 +478,7 @@ fn travel(page: &mut Svg, stage: &Stage, phase: usize, [px, py]: Point) {
 }
 
 /// What the signs in the panels mean, and a scale.
-fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
+fn legend(page: &mut Svg, stage: &Stage, moments: &Moments, scale: f64, [x, y, dx]: [f64; 3]) {
     let mut at = x;
     let unit = nice_step(dx / 4.0);
     let bar = unit * scale;
@@ -448,16 +500,24 @@ fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
     page.circle([at + 4.0, y], 3.4, CONTACT, "#ffffff", 0.8);
     at += 12.0;
     word(page, &mut at, "contact");
-    page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
-    at += 12.0;
-    word(page, &mut at, "contact lost");
+    if moments.chosen.iter().any(|m| !m.left.is_empty()) {
+        page.circle([at + 4.0, y], 3.4, "#ffffff", CONTACT, 1.4);
+        at += 12.0;
+        word(page, &mut at, "contact lost");
+    }
     page.circle([at + 4.0, y], 3.6, "#ffffff", colour(0), 1.4);
     page.circle([at + 4.0, y], 1.2, colour(0), "none", 0.0);
     at += 12.0;
     word(page, &mut at, "hinge");
-    page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
-    at += 26.0;
-    word(page, &mut at, "before a snap");
+    if moments
+        .chosen
+        .iter()
+        .any(|m| m.poses.iter().any(|p| p.1.is_some()))
+    {
+        page.line([at, y], [at + 20.0, y], colour(0), 1.1, "4 3");
+        at += 26.0;
+        word(page, &mut at, "before a snap");
+    }
     page.arrow([at, y], [at + 18.0, y], INK);
     at += 24.0;
     word(page, &mut at, "motion of the root");
@@ -467,5 +527,13 @@ fn legend(page: &mut Svg, stage: &Stage, scale: f64, [x, y, dx]: [f64; 3]) {
             at += 17.0;
             word(page, &mut at, &fit(&pawl.name, 11.0, 90.0));
         }
+    }
+    if moments.chosen.len() < moments.of {
+        let note = format!(
+            "({} of {} instants are drawn)",
+            moments.chosen.len(),
+            moments.of
+        );
+        word(page, &mut at, &note);
     }
 }

@@ -1,0 +1,663 @@
+//! A proof for a whole arc of directions: where the pawl can be, by cells.
+//!
+//! Take every direction w of an arc at once. Time is cut into slabs, orientation into cells; a
+//! cell of a slab stands for all directions of the arc, all times of the slab and all orientations
+//! of the cell. Everything is computed in certified intervals, so a cell can be shown
+//!
+//! * *blocked*: an edge of the pawl properly crosses an edge of an obstacle throughout; no pawl
+//!   is there in any of these motions;
+//! * *idle*: no contact that could hold a pawl away from rest is possible anywhere in it (the
+//!   C-function has no zero, or the contact's conditions fail, or it pushes towards rest); a pawl
+//!   that is not at rest cannot be there either;
+//! * *locked*: every contact that could hold a pawl there sticks throughout (friction), or needs
+//!   at least the limiting force throughout.
+//!
+//! What the clamp allows (see [`crate::motion`]) is followed from cell to cell: from one slab to
+//! the next at the same orientation; away from rest only to the neighbouring cell, pushed by a
+//! contact; towards rest through any cells that are not blocked (a snap), to stop at a contact or
+//! at rest. At rest both ways round are followed. Every successor that cannot be excluded is kept,
+//! so if no cell is left before the pawl is out, *no* motion of the arc gets out. Nothing is
+//! claimed otherwise.
+
+use super::escape::{Ground, Start};
+use crate::contact::{PawlShape, Ring};
+use crate::geometry::Vec2;
+use crate::number::{Interval, Rat};
+use std::collections::BTreeMap;
+
+/// What is in the model of a proof.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Model {
+    /// Contacts slide freely.
+    Shapes,
+    /// Contacts stick.
+    Friction,
+    /// Contacts stick, and give way only to less than the limiting force.
+    Force,
+}
+
+type Point = [Interval; 2];
+
+fn point(v: &Vec2) -> Point {
+    [v.x.interval(), v.y.interval()]
+}
+
+fn dot(a: &Point, b: &Point) -> Interval {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn cross(a: &Point, b: &Point) -> Interval {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn minus(a: &Point, b: &Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn positive(i: Interval) -> bool {
+    i.lo > 0.0
+}
+
+fn negative(i: Interval) -> bool {
+    i.hi < 0.0
+}
+
+/// One edge of a ring with its begin vertex, in intervals.
+struct Side {
+    at: Point,
+    next: usize,
+    prev: usize,
+    along: Point,
+    normal: Point,
+    /// normal·at: the edge's line.
+    offset: Interval,
+    convex: bool,
+    length2: Interval,
+    normal_length: Interval,
+}
+
+fn sides(ring: &Ring) -> Vec<Side> {
+    (0..ring.len())
+        .map(|i| {
+            let (at, n) = (&ring.vertices[i], &ring.normals[i]);
+            let along = &ring.vertices[ring.next(i)] - at;
+            Side {
+                at: point(at),
+                next: ring.next(i),
+                prev: ring.prev(i),
+                along: point(&along),
+                normal: point(n),
+                offset: n.dot(at).interval(),
+                convex: ring.convex[i],
+                length2: along.norm2().interval(),
+                normal_length: n.norm2().interval().sqrt(),
+            }
+        })
+        .collect()
+}
+
+/// An arc of directions as a box of unit vectors.
+pub(super) type Directions = Point;
+
+/// All obstacles' rings, the root and the pawls, in intervals.
+pub(super) struct Field {
+    rings: Vec<Vec<Side>>,
+    root: Option<Vec<Side>>,
+    pawls: Vec<Body>,
+}
+
+struct Body {
+    sides: Vec<Side>,
+    /// The hinge where the ways out begin.
+    hinge: Point,
+    reach: f64,
+    start: (i64, Interval),
+    limits: Option<[Interval; 2]>,
+    friction: Interval,
+    /// k·√(1 + μ²) and the limiting force.
+    push: Option<(Interval, Interval)>,
+}
+
+/// How fine a proof is to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grain {
+    /// Length of a slab, at least.
+    pub(super) step: f64,
+    /// A slab may be as long as this part of the time passed.
+    pub(super) spread: f64,
+    /// When to give up.
+    pub(super) until: f64,
+}
+
+impl Field {
+    pub(super) fn new(ground: &Ground<'_>, start: &Start) -> Field {
+        let scene = ground.scene;
+        let mu = scene.friction.clone().unwrap_or_else(Rat::zero);
+        let limit = scene.classify.as_ref().and_then(|c| c.force_limit.clone());
+        let body = |i: usize, shape: &PawlShape| {
+            let pawl = &scene.pawls[i];
+            let reach2 = shape.ring.vertices.iter().map(|a| a.norm2()).max();
+            let push = pawl.stiffness.as_ref().zip(limit.as_ref()).map(|(k, f)| {
+                let scale = (k.square() * (Rat::one() + mu.square())).interval().sqrt();
+                (scale, f.interval())
+            });
+            Body {
+                sides: sides(&shape.ring),
+                hinge: point(&(&pawl.hinge + &start.offset)),
+                reach: reach2.unwrap_or_default().interval().sqrt().hi,
+                start: (start.angles[i].half_turn, start.angles[i].x.interval()),
+                limits: pawl
+                    .limits
+                    .as_ref()
+                    .map(|(a, b)| [a.interval(), b.interval()]),
+                friction: mu.interval(),
+                push,
+            }
+        };
+        Field {
+            rings: ground
+                .obstacles
+                .iter()
+                .flat_map(|o| &o.rings)
+                .map(sides)
+                .collect(),
+            root: scene.root.as_ref().map(|r| {
+                let moved = r.vertices.iter().map(|p| p + &start.offset).collect();
+                sides(&Ring::new(moved, false))
+            }),
+            pawls: ground
+                .shapes
+                .iter()
+                .enumerate()
+                .map(|(i, s)| body(i, s))
+                .collect(),
+        }
+    }
+
+    /// The pawl that reaches farthest, for choosing a grain.
+    pub(super) fn reach(&self) -> f64 {
+        self.pawls.iter().map(|p| p.reach).fold(0.0, f64::max)
+    }
+
+    /// Whether no motion in one of the directions gets past `grain.until`: some pawl, or the
+    /// root, is shown to be blocked before.
+    pub(super) fn blocked(&self, w: &Directions, model: Model, grain: &Grain) -> bool {
+        let root = self.root_blocked(w, grain);
+        self.pawls
+            .iter()
+            .any(|body| self.pawl_blocked(body, w, model, grain, root))
+    }
+
+    /// A time from which on the root collides in every direction, at the grain's steps: the
+    /// begin of the first slab that is blocked throughout.
+    fn root_blocked(&self, w: &Directions, grain: &Grain) -> f64 {
+        let Some(root) = &self.root else {
+            return f64::INFINITY;
+        };
+        for slab in Slabs::new(grain) {
+            let d = [slab * w[0], slab * w[1]];
+            let still = [Interval::point(1.0), Interval::point(0.0)];
+            if self
+                .rings
+                .iter()
+                .any(|ring| crosses(root, ring, &d, &still))
+            {
+                return slab.lo;
+            }
+        }
+        f64::INFINITY
+    }
+
+    fn pawl_blocked(
+        &self,
+        body: &Body,
+        w: &Directions,
+        model: Model,
+        grain: &Grain,
+        root: f64,
+    ) -> bool {
+        let per_half_turn = (3.2 * body.reach / grain.step).clamp(15.0, 4000.0) as i64 | 1;
+        let grid = Grid { n: per_half_turn };
+        let mut live = grid.cells_of(body.start.0, body.start.1);
+        let mut first = true;
+        for slab in Slabs::new(grain) {
+            if slab.lo >= root {
+                return true;
+            }
+            let mut view = View {
+                field: self,
+                body,
+                w,
+                model,
+                slab,
+                grid,
+                near: self.near(body, w, slab),
+                known: BTreeMap::new(),
+            };
+            match view.advance(&live, first) {
+                Some(next) => live = next,
+                None => return false,
+            }
+            first = false;
+            if live.is_empty() {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The obstacle edges (ring, index) that the pawl can reach within a slab; a vertex comes with
+    /// both its edges.
+    fn near(&self, body: &Body, w: &Directions, slab: Interval) -> Vec<Vec<bool>> {
+        let reach = Interval {
+            lo: -body.reach,
+            hi: body.reach,
+        };
+        let span = |k: usize| body.hinge[k] + slab * w[k] + reach;
+        let (x, y) = (span(0), span(1));
+        self.rings
+            .iter()
+            .map(|ring| {
+                ring.iter()
+                    .map(|s| {
+                        let to = &ring[s.next].at;
+                        s.at[0].hull(&to[0]).meets(&x) && s.at[1].hull(&to[1]).meets(&y)
+                    })
+                    .collect()
+            })
+            .collect()
+    }
+}
+
+/// Whether some edge of a turned (`turn` = (cos, sin)) and displaced body properly crosses an edge
+/// of a ring throughout.
+fn crosses(body: &[Side], ring: &[Side], shift: &Point, turn: &Point) -> bool {
+    // Signs of body vertices against ring edges, and of ring vertices against body edges.
+    let vertex = |b: &Side, r: &Side| {
+        let turned = dot(&b.at, &r.normal) * turn[0] + cross(&b.at, &r.normal) * turn[1];
+        turned + dot(shift, &r.normal) - r.offset
+    };
+    let edge = |b: &Side, r: &Side| {
+        let q = minus(&r.at, shift);
+        dot(&b.normal, &q) * turn[0] + cross(&b.normal, &q) * turn[1] - b.offset
+    };
+    let apart = |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
+    ring.iter().any(|r| {
+        body.iter().any(|b| {
+            apart(vertex(b, r), vertex(&body[b.next], r))
+                && apart(edge(b, r), edge(b, &ring[r.next]))
+        })
+    })
+}
+
+/// Consecutive slabs of time from 0 to the grain's end.
+struct Slabs {
+    t: f64,
+    grain: Grain,
+}
+
+impl Slabs {
+    fn new(grain: &Grain) -> Slabs {
+        Slabs {
+            t: 0.0,
+            grain: *grain,
+        }
+    }
+}
+
+impl Iterator for Slabs {
+    type Item = Interval;
+    fn next(&mut self) -> Option<Interval> {
+        let lo = self.t;
+        let hi = lo + self.grain.step.max(lo * self.grain.spread);
+        self.t = hi;
+        // Neighbouring slabs share their common instant; the last one ends before the end.
+        (hi <= self.grain.until && hi > lo).then_some(Interval { lo, hi })
+    }
+}
+
+/// Orientation in cells: n (odd) a half-turn, numbered along the covering line; θ = 0 is inside
+/// cell (n − 1)/2 of half-turn 0, which is numbered 0.
+#[derive(Clone, Copy)]
+struct Grid {
+    n: i64,
+}
+
+impl Grid {
+    fn half_turn(self, cell: i64) -> i64 {
+        (cell + (self.n - 1) / 2).div_euclid(self.n)
+    }
+    fn x(self, cell: i64) -> Interval {
+        let i = (cell + (self.n - 1) / 2).rem_euclid(self.n);
+        let at = |k: i64| Interval::point((2 * k - self.n) as f64) / Interval::point(self.n as f64);
+        at(i).hull(&at(i + 1))
+    }
+    fn cells_of(self, half_turn: i64, x: Interval) -> Vec<i64> {
+        let base = half_turn * self.n - (self.n - 1) / 2;
+        (base - 1..=base + self.n)
+            .filter(|&c| {
+                let own = self.half_turn(c) == half_turn;
+                own && self.x(c).meets(&x) || !own && (x.hi >= 1.0 || x.lo <= -1.0)
+            })
+            .collect()
+    }
+    /// (cos θ, sin θ).
+    fn turn(self, cell: i64) -> Point {
+        let x = self.x(cell);
+        let one = Interval::point(1.0);
+        let at = |x: f64| {
+            let x = Interval::point(x.clamp(-1.0, 1.0));
+            let d = one + x.square();
+            ((one - x.square()) / d, (x + x) / d)
+        };
+        let (a, b) = (at(x.lo), at(x.hi));
+        let mut c = a.0.hull(&b.0);
+        if x.contains(0.0) {
+            c = c.hull(&one);
+        }
+        let s = a.1.hull(&b.1);
+        if self.half_turn(cell).rem_euclid(2) == 0 {
+            [c, s]
+        } else {
+            [-c, -s]
+        }
+    }
+    /// A lower bound of |θ|.
+    fn least_angle(self, cell: i64) -> f64 {
+        let h = self.half_turn(cell).abs();
+        if h > 0 {
+            return (h as f64 - 0.5) * 3.125;
+        }
+        let x = self.x(cell);
+        let m = if x.contains(0.0) {
+            0.0
+        } else {
+            x.lo.abs().min(x.hi.abs()).min(1.0)
+        };
+        // 2·arctan m ≥ 2(m − m³/3 + m⁵/5 − m⁷/7), in intervals.
+        let m = Interval::point(m);
+        let m2 = m.square();
+        let f = |k: f64| Interval::point(1.0) / Interval::point(k);
+        let series = m * (f(1.0) - m2 * (f(3.0) - m2 * (f(5.0) - m2 * f(7.0))));
+        (series + series).lo.max(0.0)
+    }
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy)]
+struct Known {
+    blocked: bool,
+    /// A contact may hold a pawl there, upper side and lower side of rest.
+    holds: bool,
+}
+
+/// How far round a pawl is followed, in half-turns.
+const TURNS: i64 = 4;
+
+struct View<'a> {
+    field: &'a Field,
+    body: &'a Body,
+    w: &'a Directions,
+    model: Model,
+    slab: Interval,
+    grid: Grid,
+    near: Vec<Vec<bool>>,
+    known: BTreeMap<i64, Known>,
+}
+
+impl View<'_> {
+    /// The cells in which a pawl can be during the slab, from those of the slab before; None past
+    /// the turns that are followed.
+    fn advance(&mut self, before: &[i64], first: bool) -> Option<Vec<i64>> {
+        let mut live: BTreeMap<i64, ()> = BTreeMap::new();
+        let mut queue: Vec<i64> = Vec::new();
+        for &c in before {
+            // Where a motion begins the pawl may be held by nothing, and snaps.
+            if first && !self.known(c).blocked || self.alive(c) {
+                live.insert(c, ());
+                queue.push(c);
+            }
+        }
+        while let Some(c) = queue.pop() {
+            if c.abs() > TURNS * self.grid.n {
+                return None;
+            }
+            let mut reached = Vec::new();
+            let away: &[i64] = match c.signum() {
+                0 => &[1, -1],
+                1 => &[1],
+                _ => &[-1],
+            };
+            for d in away {
+                if self.alive(c + d) {
+                    reached.push(c + d);
+                }
+            }
+            let mut at = c;
+            while at != 0 {
+                at -= at.signum();
+                if live.contains_key(&at) && at != 0 && self.alive(at) {
+                    // It has gone on from there itself.
+                    break;
+                }
+                if self.known(at).blocked {
+                    break;
+                }
+                if self.alive(at) {
+                    reached.push(at);
+                }
+            }
+            for r in reached {
+                if live.insert(r, ()).is_none() {
+                    queue.push(r);
+                }
+            }
+        }
+        // One that only began here and is held by nothing is gone.
+        Some(live.into_keys().filter(|&c| self.alive(c)).collect())
+    }
+
+    fn alive(&mut self, cell: i64) -> bool {
+        let k = self.known(cell);
+        !k.blocked && (cell == 0 || k.holds)
+    }
+
+    fn known(&mut self, cell: i64) -> Known {
+        if let Some(k) = self.known.get(&cell) {
+            return *k;
+        }
+        let k = self.look(cell);
+        self.known.insert(cell, k);
+        k
+    }
+
+    fn look(&self, cell: i64) -> Known {
+        let turn = self.grid.turn(cell);
+        let stop = self.stop(cell);
+        let mut out = Known {
+            blocked: stop == Some(false),
+            holds: stop == Some(true),
+        };
+        if out.blocked {
+            return out;
+        }
+        let base = self.body.hinge;
+        let slab = self.slab;
+        let w = *self.w;
+        let shift = [base[0] + slab * w[0], base[1] + slab * w[1]];
+        let pawl = &self.body.sides;
+        // n·(R a + p − q), written so that t·(n·w) is one product.
+        let vertex = |b: &Side, r: &Side| {
+            let turned = dot(&b.at, &r.normal) * turn[0] + cross(&b.at, &r.normal) * turn[1];
+            turned + dot(&base, &r.normal) + slab * dot(&w, &r.normal) - r.offset
+        };
+        // (q − p)·R m − e.
+        let edge = |b: &Side, r: &Side| {
+            let q = minus(&r.at, &base);
+            let still = dot(&b.normal, &q) * turn[0] + cross(&b.normal, &q) * turn[1];
+            let moved = dot(&b.normal, &w) * turn[0] + cross(&b.normal, &w) * turn[1];
+            still - slab * moved - b.offset
+        };
+        let apart =
+            |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
+        let side = cell.signum();
+        let angle = self.grid.least_angle(cell);
+        for (ring, near) in self.field.rings.iter().zip(&self.near) {
+            if !near.iter().any(|n| *n) {
+                continue;
+            }
+            for (j, r) in ring.iter().enumerate() {
+                let here = near[j];
+                let corner = here || near[r.prev];
+                if !corner {
+                    continue;
+                }
+                for b in pawl {
+                    let fa = edge(b, r);
+                    let touch_a = corner && r.convex && fa.contains(0.0);
+                    if !here {
+                        out.holds |= !out.holds && touch_a && {
+                            self.type_a(b, r, ring, &turn, &shift, side, angle)
+                        };
+                        continue;
+                    }
+                    let fb = vertex(b, r);
+                    if apart(fb, vertex(&pawl[b.next], r)) && apart(fa, edge(b, &ring[r.next])) {
+                        out.blocked = true;
+                        return out;
+                    }
+                    if out.holds {
+                        continue;
+                    }
+                    let touch_b = b.convex && fb.contains(0.0);
+                    out.holds = touch_a && self.type_a(b, r, ring, &turn, &shift, side, angle)
+                        || touch_b && self.type_b(b, r, &turn, &shift, side, angle);
+                }
+            }
+        }
+        out
+    }
+
+    /// Whether a pawl vertex may be held by an obstacle edge in the cell.
+    fn type_b(
+        &self,
+        b: &Side,
+        r: &Side,
+        turn: &Point,
+        shift: &Point,
+        side: i64,
+        angle: f64,
+    ) -> bool {
+        let pawl = &self.body.sides;
+        let turned = |v: &Point, n: &Point| dot(v, n) * turn[0] + cross(v, n) * turn[1];
+        let behind = minus(&pawl[b.prev].at, &b.at);
+        if negative(turned(&b.along, &r.normal)) || negative(turned(&behind, &r.normal)) {
+            return false;
+        }
+        let place = turned(&b.at, &r.along) + dot(&minus(shift, &r.at), &r.along);
+        if negative(place) || positive(place - r.length2) {
+            return false;
+        }
+        // R a·n and its derivative.
+        let (c, s) = (dot(&b.at, &r.normal), cross(&b.at, &r.normal));
+        let rise = c * turn[0] + s * turn[1];
+        let slope = s * turn[0] - c * turn[1];
+        let drag = turned(&b.at, self.w);
+        self.holds(slope, rise, drag, 1.0, r.normal_length, side, angle)
+    }
+
+    /// Whether an obstacle vertex may hold a pawl edge in the cell.
+    #[allow(clippy::too_many_arguments)]
+    fn type_a(
+        &self,
+        b: &Side,
+        r: &Side,
+        ring: &[Side],
+        turn: &Point,
+        shift: &Point,
+        side: i64,
+        angle: f64,
+    ) -> bool {
+        let turned = |v: &Point, n: &Point| dot(v, n) * turn[0] + cross(v, n) * turn[1];
+        let behind = minus(&ring[r.prev].at, &r.at);
+        if negative(turned(&b.normal, &r.along)) || negative(turned(&b.normal, &behind)) {
+            return false;
+        }
+        let q = minus(&r.at, shift);
+        let place = turned(&b.along, &q) - dot(&b.along, &b.at);
+        if negative(place) || positive(place - b.length2) {
+            return false;
+        }
+        let (c, s) = (dot(&b.normal, &q), cross(&b.normal, &q));
+        let slope = s * turn[0] - c * turn[1];
+        let drag = dot(self.w, &q);
+        self.holds(slope, b.offset, drag, -1.0, b.normal_length, side, angle)
+    }
+
+    /// Whether a contact may hold a pawl away from rest and let it slide: F_θ pushes the right
+    /// way, and |F_θ| + ε·μ·sgn(d)·ρ_y may be positive and, with forces in the model, small
+    /// enough for none to reach the limit.
+    #[allow(clippy::too_many_arguments)]
+    fn holds(
+        &self,
+        slope: Interval,
+        rise: Interval,
+        drag: Interval,
+        epsilon: f64,
+        normal: Interval,
+        side: i64,
+        angle: f64,
+    ) -> bool {
+        let push = match side {
+            0 => return true,
+            1 => slope,
+            _ => -slope,
+        };
+        if negative(push) {
+            return false;
+        }
+        if self.model == Model::Shapes {
+            return true;
+        }
+        let rub = self.body.friction * rise * Interval::point(epsilon);
+        let rub = match drag.sign() {
+            Some(s) => rub * Interval::point(f64::from(s)),
+            None => rub.hull(&-rub),
+        };
+        let most = (push + rub).hi;
+        if most < 0.0 {
+            return false;
+        }
+        if self.model == Model::Force
+            && let Some((scale, limit)) = self.body.push
+        {
+            let force = scale * normal * Interval::point(angle);
+            return (limit * Interval::point(most.max(0.0))).hi > force.lo;
+        }
+        true
+    }
+
+    /// Some(false): past an angular stop; Some(true): on one.
+    fn stop(&self, cell: i64) -> Option<bool> {
+        let [lo, hi] = self.body.limits?;
+        let h = self.grid.half_turn(cell);
+        if h.abs() > 1 {
+            return Some(false);
+        }
+        let x = self.grid.x(cell);
+        // tan(θ/2) is x, or −1/x past a quarter-turn.
+        let u = if h == 0 {
+            x
+        } else if x.contains(0.0) {
+            return Some(true);
+        } else {
+            -(Interval::point(1.0) / x)
+        };
+        // Half-turn 1 with x > 0, or −1 with x < 0, lies past a whole half-turn.
+        let past = h != 0 && (u.lo > 0.0) != (h > 0);
+        if past || u.hi < lo.lo || u.lo > hi.hi {
+            return Some(false);
+        }
+        (u.meets(&lo) || u.meets(&hi)).then_some(true)
+    }
+}

@@ -1,0 +1,22 @@
+//! Verdicts: does it lock, why, how firmly, and with what forces (DP §3.2, §4.4, Appendix A).
+//!
+//! A trajectory says what moves; a designer asks what that means. [`classify`](fn@classify) runs the ways out
+//! from where a plan ended ([`escape`]) and names the weakest; [`critical`] finds the least
+//! friction that would lock, exactly; [`peak`] encloses the forces of the sliding stretches
+//! ([`stretch`]: the balance of forces is derived there) as narrowly as asked, with the outward
+//! rounded arithmetic of [`fix`]. Kinematic and friction verdicts are exact; what holds an
+//! arctangent is enclosed, and decided only when the enclosure decides.
+
+mod cells;
+pub mod classify;
+pub mod critical;
+pub mod document;
+pub mod escape;
+pub mod fix;
+pub mod peak;
+mod qpoly;
+pub mod stretch;
+pub mod total;
+
+pub use classify::{Ask, Verdict};
+pub use document::{ClassifyDocument, ForcesDocument, classify, forces};

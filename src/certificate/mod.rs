@@ -1,0 +1,5 @@
+//! What a result proves, checked by code that shares nothing with the engine but integers,
+//! rationals and the reading of models.
+
+pub mod lp;
+mod lp_basis;

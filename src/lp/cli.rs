@@ -1,0 +1,174 @@
+//! The verbs `lp` and `verify`: arguments in, JSON out, an exit status back.
+
+use super::outcome::Status;
+use super::read::read_model;
+use super::report::{from_json, to_json};
+use super::solve::{Accuracy, Method, Options, solve};
+use crate::certificate::lp::verify;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Bad usage or bad input.
+const BAD: u8 = 2;
+/// Not decided within the limits.
+const UNDECIDED: u8 = 3;
+/// A certificate was rejected.
+const REJECTED: u8 = 4;
+
+/// Arguments of `snapfit lp`.
+#[derive(clap::Args, Clone, Debug)]
+pub struct LpArgs {
+    /// An .mps or .lp file, gzipped or not; `-` is standard input
+    pub model: PathBuf,
+    /// Who finds the basis: floating point with exact repair, or the exact simplex method alone
+    #[arg(long, value_enum, default_value_t = MethodArg::Warm)]
+    pub method: MethodArg,
+    /// How much is proven
+    #[arg(long, value_enum, default_value_t = AccuracyArg::Exact)]
+    pub accuracy: AccuracyArg,
+    /// Write all values and prices as exact rationals
+    #[arg(long)]
+    pub values: bool,
+    /// Seconds after which the result is "undecided"
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f64>,
+    /// Mebibytes that no single structure may exceed
+    #[arg(long, value_name = "MIB")]
+    pub memory_limit: Option<u64>,
+    /// Write the result there instead of standard output
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// `--method`.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodArg {
+    /// Floating point proposes, exact arithmetic disposes.
+    Warm,
+    /// The exact simplex method alone.
+    Exact,
+}
+
+/// `--accuracy`.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccuracyArg {
+    /// Nothing is proven.
+    Float,
+    /// A rational enclosure of the optimum, proven.
+    Bounds,
+    /// The optimum itself, proven.
+    Exact,
+}
+
+/// Arguments of `snapfit verify`.
+#[derive(clap::Args, Clone, Debug)]
+pub struct VerifyArgs {
+    /// A result of `snapfit lp`; `-` is standard input
+    pub result: PathBuf,
+    /// The model, where it is no longer where the result says
+    #[arg(long, value_name = "FILE")]
+    pub model: Option<PathBuf>,
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, String> {
+    if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        let done = std::io::stdin().lock().read_to_end(&mut bytes);
+        return done
+            .map(|_| bytes)
+            .map_err(|e| format!("standard input: {e}"));
+    }
+    std::fs::read(path).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+fn bad(message: impl std::fmt::Display) -> u8 {
+    let _ = writeln!(std::io::stderr(), "{message}");
+    BAD
+}
+
+/// Runs `snapfit lp`; the result is the exit status.
+pub fn run_lp(args: &LpArgs) -> u8 {
+    let time_limit = match args.time_limit {
+        None => None,
+        Some(s) => match Duration::try_from_secs_f64(s) {
+            Ok(d) => Some(d),
+            Err(_) => return bad("--time-limit is not a number of seconds"),
+        },
+    };
+    let options = Options {
+        method: match args.method {
+            MethodArg::Warm => Method::Warm,
+            MethodArg::Exact => Method::Exact,
+        },
+        accuracy: match args.accuracy {
+            AccuracyArg::Float => Accuracy::Float,
+            AccuracyArg::Bounds => Accuracy::Bounds,
+            AccuracyArg::Exact => Accuracy::Exact,
+        },
+        time_limit,
+        memory_limit: args.memory_limit.map(|m| m.saturating_mul(1 << 20)),
+        values: args.values,
+    };
+    let name = args.model.to_string_lossy();
+    let model = match read(&args.model) {
+        Err(e) => return bad(e),
+        Ok(bytes) => match read_model(&name, &bytes) {
+            Err(e) => return bad(e),
+            Ok(m) => m,
+        },
+    };
+    let outcome = solve(&model, &options);
+    let mut text = to_json(&model, &name, &outcome).to_string();
+    text.push('\n');
+    let written = match &args.out {
+        Some(path) => std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display())),
+        None => std::io::stdout()
+            .lock()
+            .write_all(text.as_bytes())
+            .map_err(|e| format!("standard output: {e}")),
+    };
+    match written {
+        Err(e) => bad(e),
+        Ok(()) if outcome.status == Status::Undecided => UNDECIDED,
+        Ok(()) => 0,
+    }
+}
+
+/// Runs `snapfit verify`; the result is the exit status.
+pub fn run_verify(args: &VerifyArgs) -> u8 {
+    let result = match read(&args.result) {
+        Err(e) => return bad(e),
+        Ok(bytes) => bytes,
+    };
+    let name = args.result.display();
+    let result: serde_json::Value = match serde_json::from_slice(&result) {
+        Ok(v) => v,
+        Err(e) => return bad(format!("{name}:{}:{}: {e}", e.line(), e.column())),
+    };
+    let path = match (&args.model, result["model"].as_str()) {
+        (Some(p), _) => p.clone(),
+        (None, Some(p)) => PathBuf::from(p),
+        (None, None) => return bad(format!("{name}: the result names no model")),
+    };
+    let model = match read(&path) {
+        Err(e) => return bad(e),
+        Ok(bytes) => match read_model(&path.to_string_lossy(), &bytes) {
+            Err(e) => return bad(e),
+            Ok(m) => m,
+        },
+    };
+    let (verdict, reason, code) = match from_json(&model, &result) {
+        Err(e) => ("rejected", Some(e), REJECTED),
+        Ok(claim) => match verify(&model, &claim) {
+            Ok(()) => ("verified", None, 0),
+            Err(e) => ("rejected", Some(e.0), REJECTED),
+        },
+    };
+    let verdict =
+        serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] });
+    match writeln!(std::io::stdout(), "{verdict}") {
+        Ok(()) => code,
+        Err(e) => bad(format!("standard output: {e}")),
+    }
+}

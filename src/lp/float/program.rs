@@ -1,0 +1,241 @@
+//! The program in doubles, scaled by powers of two, possibly turned into its dual.
+//!
+//! Scaling alternates the geometric mean of rows and of columns, in exponents, so numbers far
+//! outside the range of doubles come in as well. A program with far more rows than columns whose
+//! rows and columns are all one-sided, free or equations is dualised: its basis has the size of
+//! the smaller side, and a basis of the one is the complement of a basis of the other.
+
+use crate::lp::basis::{Basis, Status};
+use crate::lp::lift::{ldexp, mantissa};
+use crate::lp::problem::Problem;
+
+/// Compressed lines of doubles.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sparse {
+    pub(crate) start: Vec<usize>,
+    pub(crate) index: Vec<u32>,
+    pub(crate) value: Vec<f64>,
+}
+
+impl Sparse {
+    pub(crate) fn line(&self, k: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let span = self.start[k]..self.start[k + 1];
+        self.index[span.clone()]
+            .iter()
+            .map(|&i| i as usize)
+            .zip(self.value[span].iter().copied())
+    }
+
+    pub(crate) fn transposed(&self, lines: usize) -> Sparse {
+        let mut start = vec![0usize; lines + 1];
+        for &i in &self.index {
+            start[i as usize + 1] += 1;
+        }
+        for k in 0..lines {
+            start[k + 1] += start[k];
+        }
+        let mut at = start.clone();
+        let mut index = vec![0; self.index.len()];
+        let mut value = vec![0.0; self.index.len()];
+        for k in 0..self.start.len() - 1 {
+            for (i, v) in self.line(k) {
+                index[at[i]] = k as u32;
+                value[at[i]] = v;
+                at[i] += 1;
+            }
+        }
+        Sparse {
+            start,
+            index,
+            value,
+        }
+    }
+}
+
+/// Minimise cost·x subject to A·x − s = 0 and bounds on (x, s); logicals after the columns.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    pub(crate) n: usize,
+    pub(crate) m: usize,
+    pub(crate) columns: Sparse,
+    pub(crate) rows: Sparse,
+    pub(crate) cost: Vec<f64>,
+    pub(crate) lower: Vec<f64>,
+    pub(crate) upper: Vec<f64>,
+    /// Whether this is the dual of the problem it was made from.
+    pub(crate) dualised: bool,
+}
+
+impl Program {
+    /// The problem itself, scaled.
+    pub(crate) fn new(p: &Problem) -> Program {
+        let parts: Vec<(f64, i64)> = (0..p.columns.index.len())
+            .map(|e| mantissa(&p.columns.int(e)))
+            .collect();
+        let mut exponents = vec![0i64; p.n + p.m];
+        for _ in 0..4 {
+            for (lines, matrix, other) in [(p.m, &p.rows, 0), (p.n, &p.columns, p.n)] {
+                let own = if other == 0 { p.n } else { 0 };
+                // Entries of a row lie elsewhere in `parts`, so their exponent is taken anew.
+                for k in 0..lines {
+                    let (mut low, mut high) = (i64::MAX, i64::MIN);
+                    for e in matrix.span(k) {
+                        let size = if other == 0 {
+                            mantissa_exponent(matrix, e)
+                        } else {
+                            parts[e].1
+                        };
+                        let size = size + exponents[other + matrix.index[e] as usize];
+                        low = low.min(size);
+                        high = high.max(size);
+                    }
+                    if low <= high {
+                        exponents[own + k] = -(low + high).div_euclid(2);
+                    }
+                }
+            }
+        }
+        let mut columns = Sparse {
+            start: p.columns.start.clone(),
+            index: p.columns.index.clone(),
+            value: Vec::with_capacity(parts.len()),
+        };
+        for j in 0..p.n {
+            for e in p.columns.span(j) {
+                let (v, x) = parts[e];
+                let row = p.columns.index[e] as usize;
+                columns
+                    .value
+                    .push(ldexp(v, x + exponents[j] + exponents[p.n + row]));
+            }
+        }
+        let (bound, bound_exponent) = mantissa(&p.bound_scale);
+        let (scale, scale_exponent) = mantissa(&p.cost_scale.abs());
+        let limit = |v: &Option<crate::number::Int>, k: usize, infinite: f64| match v {
+            None => infinite,
+            Some(v) => {
+                let (a, x) = mantissa(v);
+                let shift = if k < p.n { -exponents[k] } else { exponents[k] };
+                ldexp(a / bound, x - bound_exponent + shift)
+            }
+        };
+        let lower = (0..p.n + p.m).map(|k| limit(&p.lower[k], k, f64::NEG_INFINITY));
+        let upper = (0..p.n + p.m).map(|k| limit(&p.upper[k], k, f64::INFINITY));
+        let (lower, upper) = (lower.collect(), upper.collect());
+        let cost = (0..p.n).map(|j| {
+            let (a, x) = mantissa(&p.cost[j]);
+            ldexp(a / scale, x - scale_exponent + exponents[j])
+        });
+        let cost: Vec<f64> = cost.collect();
+        Program {
+            n: p.n,
+            m: p.m,
+            rows: columns.transposed(p.m),
+            columns,
+            cost,
+            lower,
+            upper,
+            dualised: false,
+        }
+    }
+
+    /// The dual, where it is worth while and simple: rows and columns one-sided, free or fixed
+    /// at zero activity's right-hand side.
+    pub(crate) fn dual(&self) -> Option<Program> {
+        let simple = |k: usize| {
+            let (l, u) = (self.lower[k], self.upper[k]);
+            l == u || l == f64::NEG_INFINITY || u == f64::INFINITY
+        };
+        if self.m < 2 * self.n || !(0..self.n + self.m).all(simple) {
+            return None;
+        }
+        // A column with a finite bound would need a shift; only 0 and free are taken.
+        let zero_or_free = |j: usize| {
+            let (l, u) = (self.lower[j], self.upper[j]);
+            (l == f64::NEG_INFINITY || l == 0.0) && (u == f64::INFINITY || u == 0.0)
+        };
+        if !(0..self.n).all(zero_or_free) {
+            return None;
+        }
+        // Minimise −b·y subject to Aᵀy = c − d: y free on equations, signed on inequalities.
+        let sign = |l: f64, u: f64| {
+            if l == u {
+                (f64::NEG_INFINITY, f64::INFINITY)
+            } else if l > f64::NEG_INFINITY {
+                (0.0, f64::INFINITY)
+            } else if u < f64::INFINITY {
+                (f64::NEG_INFINITY, 0.0)
+            } else {
+                (0.0, 0.0)
+            }
+        };
+        let (n, m) = (self.m, self.n);
+        let mut lower = Vec::with_capacity(n + m);
+        let mut upper = Vec::with_capacity(n + m);
+        let mut cost = Vec::with_capacity(n);
+        for i in 0..n {
+            let (l, u) = (self.lower[self.n + i], self.upper[self.n + i]);
+            let (a, b) = sign(l, u);
+            lower.push(a);
+            upper.push(b);
+            let rhs = if l > f64::NEG_INFINITY { l } else { u };
+            cost.push(if rhs.is_finite() { -rhs } else { 0.0 });
+        }
+        for j in 0..m {
+            // aⱼ·y = cⱼ − dⱼ with dⱼ ≥ 0 at a lower bound.
+            let (a, b) = sign(self.lower[j], self.upper[j]);
+            lower.push(self.cost[j] - b);
+            upper.push(self.cost[j] - a);
+        }
+        Some(Program {
+            n,
+            m,
+            columns: self.rows.clone(),
+            rows: self.columns.clone(),
+            cost,
+            lower,
+            upper,
+            dualised: true,
+        })
+    }
+
+    /// A basis of the problem from one of this program.
+    pub(crate) fn basis(&self, p: &Problem, status: &[Status]) -> Basis {
+        if !self.dualised {
+            return Basis {
+                status: status.to_vec(),
+            };
+        }
+        // Complement: row i is our column i, column j our logical j.
+        let mut out = Vec::with_capacity(p.n + p.m);
+        let flip = |s: Status, v: usize| match s {
+            Status::Basic => crate::lp::basis::resting(p, v),
+            _ => Status::Basic,
+        };
+        for j in 0..p.n {
+            out.push(flip(status[self.n + j], j));
+        }
+        for (i, s) in status[..p.m].iter().enumerate() {
+            out.push(flip(*s, p.n + i));
+        }
+        Basis { status: out }
+    }
+
+    /// The column of a variable: entries of a column, or −1 for a logical.
+    pub(crate) fn each(&self, v: usize, mut f: impl FnMut(usize, f64)) {
+        if v < self.n {
+            for (i, a) in self.columns.line(v) {
+                f(i, a);
+            }
+        } else {
+            f(v - self.n, -1.0);
+        }
+    }
+}
+
+fn mantissa_exponent(matrix: &crate::lp::problem::Matrix, e: usize) -> i64 {
+    if matrix.limbs == 1 {
+        return 64 - i64::from((matrix.words[e] as i64).unsigned_abs().leading_zeros());
+    }
+    matrix.int(e).bits() as i64
+}

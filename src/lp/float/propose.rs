@@ -1,0 +1,92 @@
+//! Which proposal when.
+//!
+//! Large programs (and those turned round) go to the interior point first; the others to the
+//! simplex method, with the interior point as the way out where that takes too many steps.
+
+use super::engine::{Ending, Engine};
+use super::interior;
+use super::program::Program;
+use crate::lp::basis::{Basis, Status};
+use crate::lp::budget::{Budget, Exhausted};
+use crate::lp::problem::Problem;
+
+/// A basis and what it took.
+pub(crate) struct Proposal {
+    pub(crate) basis: Basis,
+    pub(crate) iterations: u64,
+    pub(crate) ending: Ending,
+    /// The objective as minimised, without the model's constant.
+    pub(crate) objective: f64,
+}
+
+/// Non-zeros from which the interior point goes first.
+const LARGE: usize = 33_000;
+/// The same for programs that are dualised, where rows abound.
+const LARGE_DUALISED: usize = 2_500;
+
+/// Proposes a basis for the problem.
+pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
+    let direct = Program::new(problem);
+    let program = direct.dual().unwrap_or_else(|| direct.clone());
+    let entries = direct.columns.index.len();
+    let large = entries
+        >= if program.dualised {
+            LARGE_DUALISED
+        } else {
+            LARGE
+        };
+    let mut iterations = 0;
+    let mut best: Option<(Vec<Status>, Ending, f64)> = None;
+    let mut take = |engine: &Engine<'_>, ending: Result<Ending, Exhausted>| {
+        iterations += engine.iterations;
+        let ending = ending.unwrap_or(Ending::Stuck);
+        if best.is_none() || ending != Ending::Stuck {
+            best = Some((engine.status.clone(), ending, engine.objective()));
+        }
+        ending != Ending::Stuck
+    };
+    let from_interior = |noise: f64| {
+        let weights = interior::weights(&direct, noise, budget)?;
+        Some(Engine::new(
+            &program,
+            interior::heaviest(&program, &weights),
+        ))
+    };
+    let sizes = (program.n + program.m) as u64;
+    let mut done = false;
+    if large && let Some(mut engine) = from_interior(1.0) {
+        engine.most = 2 * sizes + 1000;
+        let ending = engine.optimise(false, budget);
+        done = take(&engine, ending);
+    }
+    if !done {
+        let mut engine = Engine::slack(&program);
+        engine.most = 4 * sizes + 1000;
+        let ending = engine.optimise(true, budget);
+        done = take(&engine, ending);
+    }
+    if !done
+        && !large
+        && let Some(mut engine) = from_interior(1.0)
+    {
+        engine.most = 4 * sizes + 1000;
+        let ending = engine.optimise(false, budget);
+        take(&engine, ending);
+    }
+    let (status, ending, objective) =
+        best.unwrap_or_else(|| (Engine::slack(&program).status, Ending::Stuck, f64::NAN));
+    Proposal {
+        basis: program.basis(problem, &status),
+        iterations,
+        ending: match ending {
+            // What the dual says of the dual.
+            Ending::Infeasible | Ending::Unbounded if program.dualised => Ending::Stuck,
+            other => other,
+        },
+        objective: if program.dualised {
+            -objective
+        } else {
+            objective
+        },
+    }
+}

@@ -1,0 +1,257 @@
+//! One real root of an integer polynomial: the data behind an irrational `Algebraic`.
+//!
+//! The idea: a root is pinned by a square-free polynomial and an interval that holds no other root of it. What
+//! is costly to know (a narrow enclosure, whether it is rational, the minimal polynomial) is worked out on the
+//! first question and kept.
+
+use super::float::FloatPoly;
+use super::modular::gcd_degree_bound;
+use super::refine::{Cell, Refiner, Span};
+use super::{Int, Interval, Poly, Rat};
+use std::sync::{Arc, OnceLock};
+
+/// How wide, for its size, a double enclosure may be: some dozen units in the last place.
+const NARROW: f64 = 1e-14;
+
+/// Invariant: `poly` is primitive and square-free with a positive leading coefficient; it has exactly one root
+/// in the open interval `span`, none at the ends, so `sign_lo` ≠ 0 is its sign at the lower end and −sign_lo
+/// that at the upper.
+pub(crate) struct Root {
+    pub(crate) poly: Arc<Poly>,
+    pub(crate) span: Span,
+    sign_lo: i32,
+    enclosure: OnceLock<(Interval, Option<Span>)>,
+    rational: OnceLock<Option<Rat>>,
+    minimal: OnceLock<Arc<Poly>>,
+}
+
+impl Root {
+    /// See the invariant.
+    pub(crate) fn new(poly: Arc<Poly>, span: Span, sign_lo: i32) -> Root {
+        debug_assert_eq!(poly.sign_at_dyadic(&span.lo, span.e), sign_lo);
+        debug_assert_eq!(poly.sign_at_dyadic(&span.hi, span.e), -sign_lo);
+        let (enclosure, rational, minimal) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Root {
+            poly,
+            span,
+            sign_lo,
+            enclosure,
+            rational,
+            minimal,
+        }
+    }
+    /// With an isolating interval of doubles that is itself the narrow enclosure.
+    pub(crate) fn enclosed(poly: Arc<Poly>, x: Interval, sign_lo: i32) -> Root {
+        let root = Root::new(poly, Span::from_doubles(x), sign_lo);
+        let _ = root.enclosure.set((x, None));
+        root
+    }
+    /// The one root that a square-free polynomial is proven to have in an interval of doubles.
+    pub(crate) fn adopt(poly: &Poly, x: Interval) -> Option<Root> {
+        if !(x.is_finite() && x.lo < x.hi) {
+            return None;
+        }
+        let float = FloatPoly::new(poly)?;
+        let sign_lo = float.one_root(x)?;
+        Some(Root::new(
+            Arc::new(poly.clone()),
+            Span::from_doubles(x),
+            sign_lo,
+        ))
+    }
+    /// A refinement that starts from the narrow enclosure: always, so that no answer depends on what
+    /// was asked before.
+    pub(crate) fn refine(&self) -> Refiner<'_> {
+        self.enclosure();
+        let best = self.enclosure.get().and_then(|(_, s)| s.as_ref());
+        Refiner::new(&self.poly, best.unwrap_or(&self.span).clone(), self.sign_lo)
+    }
+    /// Certified double enclosure, made once.
+    pub(crate) fn enclosure(&self) -> Interval {
+        self.enclosure.get_or_init(|| self.enclose()).0
+    }
+    fn enclose(&self) -> (Interval, Option<Span>) {
+        let polished = || {
+            let ends = self.span.doubles()?;
+            FloatPoly::new(&self.poly)?.polish(ends.lo, ends.hi, self.sign_lo)
+        };
+        let start = match polished() {
+            Some(x) => {
+                let span = Span::from_doubles(x);
+                if x.width() <= NARROW * x.lo.abs().min(x.hi.abs()) {
+                    return (x, Some(span));
+                }
+                span
+            }
+            None => self.span.clone(),
+        };
+        self.narrowed(start)
+    }
+    /// The same by exact refinement.
+    fn narrowed(&self, start: Span) -> (Interval, Option<Span>) {
+        let size = start.lo.bits().max(start.hi.bits()) as i64 - start.e as i64;
+        let mut bits = (60 - size).clamp(0, 1140) as u64;
+        let mut refiner = Refiner::new(&self.poly, start, self.sign_lo);
+        loop {
+            let k = match refiner.cell(bits) {
+                Cell::Exact(r) => return (r.interval(), None),
+                Cell::Between(k) => k,
+            };
+            let known = k.abs().bits();
+            // 2^-1140 lies far below the least double.
+            if known >= 58 || bits >= 1140 {
+                let e = -(bits as i64);
+                let hi = Rat::dyadic(&k + Int::one(), e).interval().hi;
+                let x = Interval {
+                    lo: Rat::dyadic(k, e).interval().lo,
+                    hi,
+                };
+                return (x, Some(refiner.span().clone()));
+            }
+            bits = if known < 2 {
+                2 * bits + 64
+            } else {
+                bits + 60 - known
+            }
+            .min(1140);
+        }
+    }
+    /// The sign of the polynomial below the root, within the isolating interval.
+    pub(crate) fn sign_below(&self) -> i32 {
+        self.sign_lo
+    }
+    /// The value where it is rational.
+    pub(crate) fn to_rat(&self) -> Option<&Rat> {
+        let decide = || {
+            let lead = self.poly.leading()?;
+            // lc·α is an integer if α is rational.
+            let scaled = lead.interval() * self.enclosure();
+            if scaled.lo.is_finite() && scaled.lo.ceil() > scaled.hi {
+                return None;
+            }
+            let bits = lead.bits() + 1;
+            let k = match self.refine().cell(bits) {
+                Cell::Exact(r) => return Some(r),
+                Cell::Between(k) => k,
+            };
+            // lc·k/2^bits < lc·α < lc·(k+1)/2^bits: at most one integer, the first above.
+            let m = (lead * k).shr(bits) + Int::one();
+            let r = Rat::new(m, lead.clone());
+            let inside = self.span.low() < r && r < self.span.high();
+            (inside && self.poly.sign_at(&r) == 0).then_some(r)
+        };
+        self.rational.get_or_init(decide).as_ref()
+    }
+    /// The irreducible polynomial of the root.
+    pub(crate) fn minimal(&self) -> &Arc<Poly> {
+        self.minimal.get_or_init(|| {
+            if let Some(r) = self.to_rat() {
+                return Arc::new(linear(r));
+            }
+            if self.poly.coeffs().len() == 3 {
+                return self.poly.clone();
+            }
+            let mut factors = self.poly.irreducible_factors();
+            if factors.len() == 1 {
+                return self.poly.clone();
+            }
+            let at = factors.iter().position(|f| self.span.changes_sign(f));
+            Arc::new(factors.swap_remove(at.expect("one factor has the root")))
+        })
+    }
+    /// Whether `p` vanishes at the root.
+    pub(crate) fn is_root_of(&self, p: &Poly) -> bool {
+        if p.is_zero() {
+            return true;
+        }
+        if gcd_degree_bound(&self.poly, p) == Some(0) {
+            return false;
+        }
+        // A divisor of `poly` has no root at the ends and at most one, simple, between.
+        let g = self.poly.gcd(p);
+        g.coeffs().len() > 1 && self.span.changes_sign(&g)
+    }
+    /// Equality, decided without refinement.
+    pub(crate) fn equals(&self, o: &Root) -> bool {
+        let Some(common) = self.span.common(&o.span) else {
+            return false;
+        };
+        if Arc::ptr_eq(&self.poly, &o.poly) || self.poly == o.poly {
+            // Ends of either interval are no roots, and each holds but one.
+            return common.changes_sign(&self.poly);
+        }
+        if gcd_degree_bound(&self.poly, &o.poly) == Some(0) {
+            return false;
+        }
+        let g = self.poly.gcd(&o.poly);
+        g.coeffs().len() > 1 && common.changes_sign(&g)
+    }
+    /// Exact sign of a polynomial at the root: an interval first, then a gcd for zero, then refinement.
+    pub(crate) fn sign_of(&self, p: &Poly) -> i32 {
+        if let Some(s) = p.eval_interval(self.enclosure()).sign() {
+            return s;
+        }
+        if self.is_root_of(p) {
+            return 0;
+        }
+        let mut bits = grid(self.enclosure(), 100);
+        let mut refiner = self.refine();
+        loop {
+            let k = match refiner.cell(bits) {
+                Cell::Exact(r) => return p.sign_at(&r),
+                Cell::Between(k) => k,
+            };
+            let (value, error) = value_on_cell(p, &k, bits);
+            if value.abs() > error {
+                return value.sign();
+            }
+            bits = 2 * bits + 32;
+        }
+    }
+}
+
+/// den·x − num.
+pub(crate) fn linear(r: &Rat) -> Poly {
+    Poly::new(vec![-r.numer(), r.denom().clone()])
+}
+
+/// Bits after the point that show about `digits` significant bits of a number, as far as doubles tell.
+pub(crate) fn grid(x: Interval, digits: i64) -> u64 {
+    let size = x.lo.abs().max(x.hi.abs());
+    let exponent = (size.to_bits() >> 52) as i64 - 1023;
+    (digits - exponent).clamp(0, 1200) as u64
+}
+
+/// A bound 2^b > |p'(x)| for |x| ≤ 2^size.
+fn slope_bits(p: &Poly, size: i64) -> i64 {
+    let terms = p
+        .coeffs()
+        .iter()
+        .enumerate()
+        .skip(1)
+        .filter(|(_, c)| !c.is_zero());
+    let most = terms
+        .map(|(i, c)| c.bits() as i64 + bit_length(i) + size * (i as i64 - 1))
+        .max();
+    most.unwrap_or(0) + bit_length(p.coeffs().len())
+}
+fn bit_length(n: usize) -> i64 {
+    (usize::BITS - n.leading_zeros()) as i64
+}
+
+/// The power of two that `value_on_cell` multiplies with.
+pub(crate) fn scale_of(p: &Poly, bits: u64) -> i64 {
+    bits as i64 * (p.coeffs().len() as i64 - 1).max(0)
+}
+
+/// (v, err): on the cell k of the grid 2^-bits the value of p, times 2^(bits·degree), is v ± err.
+pub(crate) fn value_on_cell(p: &Poly, k: &Int, bits: u64) -> (Int, Int) {
+    let value = p.eval_dyadic(k, bits);
+    if p.coeffs().len() <= 1 {
+        return (value, Int::zero());
+    }
+    let size = k.bits() as i64 + 1 - bits as i64;
+    // |p(x) − p(k/2^b)| ≤ |p'|·2^-b
+    let error = slope_bits(p, size) - bits as i64 + scale_of(p, bits);
+    (value, Int::one().shl(error.max(0) as u64))
+}

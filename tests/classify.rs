@@ -1,0 +1,204 @@
+//! Verdicts: the handbook's hooks, the paper's figures, critical friction against simulation, the
+//! cover of the circle against exact single directions, and what a verdict may not depend on.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::count;
+use snapfit::analysis::classify::{Ask, Relative, Verdict, direction, relative};
+use snapfit::analysis::escape::{Ground, Start};
+use snapfit::analysis::total::{Arc, total};
+use snapfit::motion::{OutcomeKind, simulate};
+use snapfit::number::{Poly, Rat};
+use snapfit::scene::{Scene, read_scene};
+
+fn scene(name: &str) -> Scene {
+    let path = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    match read_scene(name, &text) {
+        Ok(file) => file.scene().clone(),
+        Err(e) => panic!("{e:?}"),
+    }
+}
+
+const ASK: Ask = Ask {
+    deadline: None,
+    critical: true,
+};
+
+fn decided(scene: &Scene) -> Relative {
+    relative(scene, &ASK).unwrap()
+}
+
+const FAMILIES: [(&str, Verdict); 8] = [
+    ("examples/handbook-vertex.toml", Verdict::Friction),
+    ("examples/handbook-edge.toml", Verdict::None),
+    ("examples/bayer-hook.toml", Verdict::None),
+    ("tests/data/total-fig5.toml", Verdict::Kinematic),
+    ("tests/data/total-fig7b.toml", Verdict::Kinematic),
+    ("tests/data/total-fig7d.toml", Verdict::Friction),
+    ("tests/data/total-fig7e.toml", Verdict::Force),
+    ("tests/data/two-pawls.toml", Verdict::Friction),
+];
+
+#[test]
+fn families_have_their_class() {
+    for (name, class) in FAMILIES {
+        assert_eq!(decided(&scene(name)).class, Some(class), "{name}");
+    }
+}
+
+/// Two hooks with the same handbook numbers in different classes; the one that sticks does so
+/// where tan(α′ + |θ|) = 1/μ: tan|θ| = (5/3 − 3/2)/(1 + 5/2) = 1/21, at 2.73°.
+#[test]
+fn the_handbook_pair_parts() {
+    let vertex = decided(&scene("examples/handbook-vertex.toml"));
+    let run = &vertex.directions[0].run;
+    assert_eq!(run.outcome.kind, OutcomeKind::Stuck);
+    let angle = &run.pawls[0].events.last().unwrap().angle;
+    // tan θ = 2x/(1 − x²) = −1/21, so x² − 42x − 1 = 0.
+    assert_eq!(angle.half_turn, 0);
+    assert_eq!(angle.x.sign_of(&Poly::from_i64(&[-1, -42, 1])), 0);
+    assert!(angle.x.sign() < 0);
+    // The other one locks from μ·tan α′ = 1 on: the handbook's asymptote, at θ = 0, exactly.
+    let edge = decided(&scene("examples/handbook-edge.toml"));
+    assert_eq!(edge.critical.unwrap().to_rat(), Some(Rat::frac(2, 3)));
+}
+
+/// At μ* ± 2⁻¹⁰⁰ the motion sticks above and slides below.
+#[test]
+fn critical_friction_is_critical() {
+    let eps = Rat::from(2).pow(100).recip();
+    let mut checked = 0;
+    for (name, class) in FAMILIES {
+        if class == Verdict::Kinematic {
+            continue;
+        }
+        let mut s = scene(name);
+        s.friction = None;
+        let free = decided(&s);
+        let Some(critical) = free.critical else {
+            // Nothing is met on the way out.
+            continue;
+        };
+        checked += 1;
+        let (lo, hi) = critical.enclosure(120);
+        for (mu, locks) in [(&lo - &eps, false), (&hi + &eps, true)] {
+            s.friction = Some(mu);
+            let r = decided(&s);
+            if r.start.is_none() {
+                // The plan itself sticks there.
+                assert!(
+                    free.critical_forward
+                        .as_ref()
+                        .is_some_and(|f| *f < critical),
+                    "{name}"
+                );
+                continue;
+            }
+            assert_eq!(r.class == Some(Verdict::Friction), locks, "{name}");
+        }
+        if let Some(forward) = free.critical_forward {
+            let (lo, hi) = forward.enclosure(120);
+            for (mu, sticks) in [(&lo - &eps, false), (&hi + &eps, true)] {
+                s.friction = Some(mu);
+                let run = simulate(&s, &Default::default()).unwrap();
+                assert_eq!(
+                    run.outcome.kind == OutcomeKind::Stuck,
+                    sticks,
+                    "{name} forward"
+                );
+            }
+        }
+    }
+    assert!(checked >= 5);
+}
+
+/// Kinematic and friction verdicts do not depend on stiffness, kinematic ones not on μ either;
+/// what sticks at μ sticks at every larger one.
+#[test]
+fn verdicts_depend_on_no_more_than_they_need() {
+    for (name, class) in FAMILIES {
+        let base = scene(name);
+        if class >= Verdict::Friction {
+            for k in [Rat::frac(1, 1000), Rat::from(77)] {
+                let mut s = base.clone();
+                s.pawls
+                    .iter_mut()
+                    .for_each(|p| p.stiffness = Some(k.clone()));
+                assert_eq!(decided(&s).class, Some(class), "{name}");
+            }
+        }
+        let mut before = Verdict::None;
+        for mu in [
+            Rat::zero(),
+            Rat::frac(1, 10),
+            Rat::frac(1, 3),
+            Rat::frac(1, 2),
+            Rat::frac(3, 5),
+        ] {
+            let mut s = base.clone();
+            s.friction = Some(mu);
+            let Some(now) = decided(&s).class else {
+                break;
+            };
+            if class == Verdict::Kinematic {
+                assert_eq!(now, class, "{name}");
+            } else {
+                assert!(now.max(Verdict::Force) >= before, "{name}");
+                before = now;
+            }
+        }
+    }
+}
+
+/// Every direction of the circle, and random exact directions against the cover.
+#[test]
+fn the_cover_holds_for_single_directions() {
+    let scenes = [
+        ("tests/data/total-fig5.toml", Verdict::Kinematic),
+        ("tests/data/total-fig7b.toml", Verdict::Kinematic),
+        ("tests/data/total-fig7d.toml", Verdict::Friction),
+        ("tests/data/total-fig7e.toml", Verdict::Force),
+    ];
+    for (name, class) in scenes {
+        let s = scene(name);
+        let ground = Ground::new(&s, None);
+        let plan = simulate(&s, &Default::default()).unwrap();
+        let start = Start::after(&plan).unwrap();
+        let whole = total(&ground, &start, None);
+        assert_eq!(whole.class, Some(class), "{name}");
+        assert_eq!(whole.undecided_width, 0.0, "{name}");
+        let length: f64 = whole.cover.iter().map(Arc::width).sum();
+        assert!(length >= 2.0 * std::f64::consts::PI, "{name}");
+        for pair in whole.cover.windows(2) {
+            assert_eq!(pair[0].ends()[1], pair[1].ends()[0], "{name}");
+        }
+        let mut seed = 0x9E37_79B9_7F4A_7C15u64;
+        for _ in 0..count(2500) {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            let arc = &whole.cover[(seed >> 20) as usize % whole.cover.len()];
+            let part = Rat::frac((seed & 0xFFFF) as i64, 0xFFFF);
+            let at = &arc.from + &(&(&arc.to - &arc.from) * &part);
+            let w = Arc::unit(arc.quarter, &at);
+            let d = direction(&ground, &start, &w, &whole.distance.square(), false);
+            let proven = arc.verdict.unwrap();
+            let blocked = d.verdict >= proven || d.run.outcome.kind == OutcomeKind::Bifurcated;
+            assert!(blocked, "{name}: {w:?} {:?} < {proven:?}", d.verdict);
+        }
+    }
+}
+
+/// One way out is enough.
+#[test]
+fn a_way_out_is_named() {
+    let mut s = scene("tests/data/total-fig7d.toml");
+    s.obstacles.truncate(1);
+    let ground = Ground::new(&s, None);
+    let plan = simulate(&s, &Default::default()).unwrap();
+    let whole = total(&ground, &Start::after(&plan).unwrap(), None);
+    assert_eq!(whole.class, Some(Verdict::None));
+    assert!(whole.escape.is_some());
+}

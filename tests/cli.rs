@@ -1,0 +1,265 @@
+//! The command line from outside: exit statuses, streams, and files that are never lost.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+const PINS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/pins.toml");
+
+fn snapfit(args: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_snapfit"));
+    command.args(args).stdin(Stdio::null()).output().unwrap()
+}
+
+fn with_input(args: &[&str], input: &[u8]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_snapfit"));
+    command
+        .args(args)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    // A child that refuses its arguments does not read.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// An empty folder of its own for a test.
+fn folder(name: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{name}"));
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+#[test]
+fn a_jam_is_a_result() {
+    let output = snapfit(&["simulate", PINS]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["outcome"]["kind"], "jammed");
+    assert!(output.stderr.is_empty());
+}
+
+#[test]
+fn standard_input_and_overrides() {
+    let text = fs::read(PINS).unwrap();
+    let set = [
+        "simulate",
+        "-",
+        "--set",
+        "scene.name=renamed",
+        "--set",
+        "pawl.arm.stiffness=5/2",
+    ];
+    let output = with_input(&set, &text);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stdout(&output).contains("\"scene\": \"renamed\""));
+    for (bad, named) in [("scene.name", "scene.name"), ("nothing.here=1", "nothing")] {
+        let output = with_input(&["simulate", "-", "--set", bad], &text);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(named));
+    }
+}
+
+#[test]
+fn bad_input_is_placed() {
+    let bad = fs::read_to_string(PINS)
+        .unwrap()
+        .replace("duration = \"18\"", "duration = \"1/0\"");
+    let line = 1 + bad.lines().position(|l| l.contains("1/0")).unwrap();
+    for verb in [
+        &["simulate", "-"][..],
+        &["check", "-"],
+        &["render", "-", "--svg"],
+    ] {
+        let output = with_input(verb, bad.as_bytes());
+        assert_eq!(output.status.code(), Some(2));
+        assert!(output.stdout.is_empty());
+        assert!(
+            stderr(&output).contains(&format!(":{line}:")),
+            "{}",
+            stderr(&output)
+        );
+    }
+    let output = snapfit(&["simulate", "no-such-file.toml"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("no-such-file.toml"));
+    let endless = fs::read_to_string(PINS.replace("pins", "root"))
+        .unwrap()
+        .replace("[\"0\",\"-1/3\"]", "[\"0\",\"1\"]")
+        .replace("duration = \"100\"", "until = \"root-collision\"");
+    let output = with_input(&["simulate", "-"], endless.as_bytes());
+    assert_eq!(output.status.code(), Some(2), "{}", stdout(&output));
+    assert!(stderr(&output).contains("<stdin>:"), "{}", stderr(&output));
+}
+
+#[test]
+fn bad_usage() {
+    let wrong: [&[&str]; 9] = [
+        &[],
+        &["fly", PINS],
+        &["simulate"],
+        &["simulate", PINS, "--arithmetic", "f64"],
+        &["simulate", PINS, "--arithmetic", "roman"],
+        &["simulate", PINS, "--method", "sweep"],
+        &["simulate", PINS, "--time-limit", "soon"],
+        &["render", PINS],
+        &["schema", "nothing"],
+    ];
+    for args in wrong {
+        let output = snapfit(args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(output.stdout.is_empty(), "{args:?}");
+        assert!(!output.stderr.is_empty(), "{args:?}");
+    }
+    let listed = stderr(&snapfit(&["fly"]));
+    for verb in ["simulate", "check", "render", "schema"] {
+        assert!(listed.contains(verb));
+    }
+}
+
+#[test]
+fn undecided_within_the_limit() {
+    let output = snapfit(&["simulate", PINS, "--time-limit", "0"]);
+    assert_eq!(output.status.code(), Some(3));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["outcome"]["kind"], "undecided");
+}
+
+#[test]
+fn formats() {
+    let summary = stdout(&snapfit(&["simulate", PINS, "--format", "summary"]));
+    assert!(summary.starts_with("pins jams"), "{summary}");
+    assert!(!summary.contains('\x1b'), "no colours in a pipe");
+    let check = stdout(&snapfit(&["check", PINS]));
+    assert!(serde_json::from_str::<serde_json::Value>(&check).is_ok());
+    let check = stdout(&snapfit(&["check", PINS, "--format", "summary"]));
+    assert!(check.starts_with("scene pins"));
+    for name in ["scene", "result"] {
+        let schema = snapfit(&["schema", name]);
+        let schema: serde_json::Value = serde_json::from_slice(&schema.stdout).unwrap();
+        assert_eq!(schema["$id"], format!("snapfit.{name}/1"));
+    }
+}
+
+#[test]
+fn out_replaces_a_file_whole() {
+    let folder = folder("out");
+    let path = folder.join("result.json");
+    let shown = path.to_str().unwrap();
+    fs::write(&path, "what was there").unwrap();
+    let output = snapfit(&["simulate", PINS, "--out", shown]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(output.stdout.is_empty());
+    let document: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!(document["scene"], "pins");
+    assert_eq!(
+        fs::read_dir(&folder).unwrap().count(),
+        1,
+        "nothing is left beside it"
+    );
+}
+
+#[test]
+fn out_keeps_the_file_where_it_fails() {
+    let folder = folder("kept");
+    let path = folder.join("result.json");
+    let shown = path.to_str().unwrap();
+    fs::write(&path, "precious").unwrap();
+    // Refused input, and an input that would be overwritten.
+    let output = with_input(&["simulate", "-", "--out", shown], b"nonsense");
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
+    let scene = folder.join("scene.toml");
+    fs::copy(PINS, &scene).unwrap();
+    let scene = scene.to_str().unwrap();
+    for args in [
+        ["simulate", scene, "--out", scene],
+        ["render", scene, "--svg", scene],
+    ] {
+        assert_eq!(snapfit(&args).status.code(), Some(2));
+    }
+    assert_eq!(fs::read(scene).unwrap(), fs::read(PINS).unwrap());
+    // A path that is no file.
+    let output = snapfit(&["simulate", PINS, "--out", folder.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let output = snapfit(&[
+        "simulate",
+        PINS,
+        "--out",
+        folder.join("no/where").to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn out_goes_through_a_link_and_keeps_permissions() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = folder("link");
+    let (file, link) = (folder.join("real.json"), folder.join("link.json"));
+    fs::write(&file, "old").unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink(&file, &link).unwrap();
+    let output = snapfit(&["simulate", PINS, "--out", link.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(
+        fs::metadata(&file).unwrap().permissions().mode() & 0o777,
+        0o640
+    );
+    assert!(fs::read_to_string(&file).unwrap().starts_with('{'));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_snapfit"));
+    command
+        .args(["simulate", "-"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    // The reader goes away before the input, and so before the output, is there.
+    drop(child.stdout.take());
+    child
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(&fs::read(PINS).unwrap())
+        .unwrap();
+    let mut message = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut message)
+        .unwrap();
+    assert_eq!(message, "");
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn render_writes_one_picture() {
+    let folder = folder("render");
+    let path = folder.join("pins.svg");
+    let output = snapfit(&["render", PINS, "--svg", path.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let file = fs::read_to_string(&path).unwrap();
+    assert_eq!(stdout(&snapfit(&["render", PINS, "--svg"])), file);
+    assert!(file.starts_with("<svg "));
+}
