@@ -266,6 +266,8 @@ fn cases(nominal: usize) -> Config {
         cases: count(nominal) as u32,
         failure_persistence: None,
         max_shrink_iters: 400,
+        // Some properties hold only of runs that complete, which half of the scenes do not.
+        max_global_rejects: 20 * count(nominal) as u32 + 1024,
         ..Config::default()
     }
 }
