@@ -681,11 +681,11 @@ impl Runner<'_> {
         if same || *at == self.end {
             return None;
         }
-        self.hold(first, half_turn, at, angle)
+        self.hold(first, at, angle)
     }
 
     /// Sticks at once where friction holds the contact that the state has begun to follow.
-    fn hold(&mut self, arc: ArcId, _half_turn: i64, at: &Time, angle: &Angle) -> Option<Stop> {
+    fn hold(&mut self, arc: ArcId, at: &Time, angle: &Angle) -> Option<Stop> {
         let mu = self.set.friction?;
         let t = stick_time(self.slice, arc, at, mu)?;
         if t != *at {
@@ -773,7 +773,7 @@ impl Runner<'_> {
         if limit {
             self.event(EventKind::LimitStop, at, &to, touching);
         }
-        self.hold(first, half_turn, at, &to)
+        self.hold(first, at, &to)
     }
 
     /// Struck at rest so that both ways round are open.

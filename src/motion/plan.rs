@@ -18,7 +18,7 @@ use std::time::Instant;
 pub struct Options<'a> {
     /// When to give up, undecided.
     pub deadline: Option<Instant>,
-    /// Told after each phase: phases done, phases in all, time reached, total time if known.
+    /// Told before each pawl's run through each phase.
     pub progress: Option<&'a dyn Fn(Progress)>,
 }
 
