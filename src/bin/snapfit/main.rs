@@ -69,7 +69,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
             output::write(None, &(text + "\n"))?;
             Ok(DECIDED)
         }
-        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Schema(args) => {
             let schema = match args.name {
