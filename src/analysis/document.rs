@@ -429,7 +429,7 @@ pub struct SegmentForces {
 pub fn forces(scene: &Scene, digits: u32, ask: &Ask) -> Result<ForcesDocument, PlanError> {
     let options = Options {
         deadline: ask.deadline,
-        progress: None,
+        ..Options::default()
     };
     let run = simulate(scene, &options)?;
     let ground = Ground::new(scene, ask.deadline);

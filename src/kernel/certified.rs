@@ -23,6 +23,7 @@ impl<const FILTER: bool> Kernel for Certified<FILTER> {
     type Root = Algebraic;
     type Time = Time;
 
+    const CERTIFIED: bool = true;
     const ENCLOSES: bool = FILTER;
 
     fn primitive(c: &[Rat]) -> Option<(Vec<Int>, i32)> {
@@ -41,6 +42,9 @@ impl<const FILTER: bool> Kernel for Certified<FILTER> {
     }
     fn zero_coef() -> Int {
         Int::zero()
+    }
+    fn publish(c: &Int) -> Int {
+        c.clone()
     }
 }
 
@@ -156,6 +160,9 @@ impl<const FILTER: bool> Position<Certified<FILTER>> for Algebraic {
     fn of(x: Rat) -> Algebraic {
         Algebraic::from(x)
     }
+    fn renew(&self) -> Algebraic {
+        self.clone()
+    }
     fn interval(&self) -> Interval {
         Algebraic::interval(self)
     }
@@ -223,6 +230,6 @@ impl<const FILTER: bool> Instant<Certified<FILTER>> for Time {
         })
     }
     fn publish(&self) -> Time {
-        self.clone()
+        if FILTER { self.clone() } else { self.renewed() }
     }
 }

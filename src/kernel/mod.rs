@@ -22,12 +22,14 @@
 //! second implementation.
 
 mod certified;
+mod float;
 mod time;
 
 pub use certified::{Certified, Exact, Filtered};
+pub use float::{COEFFICIENT_BITS, Double, Float, FloatOptions, Identify, with_float};
 pub use time::Time;
 
-use crate::number::{Algebraic, Interval, Scalar};
+use crate::number::{Algebraic, Int, Interval, Scalar};
 use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -47,10 +49,12 @@ pub trait Kernel: Copy + Debug + Default + 'static {
     /// Instants of a phase.
     type Time: Instant<Self>;
 
+    /// Whether its answers are exact.
+    const CERTIFIED: bool;
     /// Whether interval tests before the numbers themselves save work.
     const ENCLOSES: bool;
 
-    /// A slice begins: nothing identified in an earlier one concerns it.
+    /// A phase begins: nothing identified in an earlier one concerns it.
     fn begin() {}
     /// Whether points that share a name are one point without any arithmetic.
     fn names() -> bool {
@@ -65,6 +69,9 @@ pub trait Kernel: Copy + Debug + Default + 'static {
     fn stop(u: &Self::Num) -> [Self::Coef; 3];
     /// The coefficient zero.
     fn zero_coef() -> Self::Coef;
+
+    /// A coefficient as an integer: for doubles, times 2 to the [`COEFFICIENT_BITS`].
+    fn publish(c: &Self::Coef) -> Int;
 
     /// The upper (true) or the lower end of a chart: 1 or −1.
     fn side(upper: bool) -> Self::Num {
@@ -124,6 +131,8 @@ pub trait Polynomial<K: Kernel>: Clone + Debug {
 pub trait Position<K: Kernel>: Clone + Debug + Ord {
     /// A number.
     fn of(x: K::Num) -> Self;
+    /// The position among those of a phase that begins.
+    fn renew(&self) -> Self;
     /// An enclosure.
     fn interval(&self) -> Interval;
     /// −1, 0 or 1.

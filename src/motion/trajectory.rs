@@ -2,7 +2,7 @@
 
 use crate::contact::{Chart, Contact};
 use crate::geometry::Vec2;
-use crate::kernel::{Filtered, Kernel, Polynomial, Position};
+use crate::kernel::{Filtered, Instant as _, Kernel, Polynomial, Position};
 use crate::number::{Rat, Scalar};
 use std::cmp::Ordering;
 
@@ -321,4 +321,69 @@ pub struct Trajectory<K: Kernel = Filtered> {
     pub outcome: Outcome<K>,
     /// One history a pawl, in file order.
     pub pawls: Vec<PawlTrace<K>>,
+    /// What it took.
+    pub ledger: super::ledger::Ledger,
+}
+
+// ── results for outsiders ───────────────────────────────────────────────────────────────────
+
+impl<K: Kernel> Angle<K> {
+    fn published(self) -> Angle {
+        Angle {
+            half_turn: self.half_turn,
+            x: self.x.publish(),
+        }
+    }
+}
+
+impl<K: Kernel> Trajectory<K> {
+    /// The same in exact numbers: those that the kernel's own stand for.
+    pub fn published(self) -> Trajectory {
+        let phase = |p: Phase<K>| Phase {
+            from: p.from,
+            to: p.to.publish(),
+            offset: p.offset,
+            velocity: p.velocity,
+        };
+        let event = |e: Event<K>| Event {
+            kind: e.kind,
+            time: e.time.publish(),
+            phase: e.phase,
+            angle: e.angle.published(),
+            to: e.to.map(Angle::published),
+            contacts: e.contacts,
+            root_contacts: e.root_contacts,
+        };
+        let sliding = |s: Sliding<K>| Sliding {
+            contact: s.contact,
+            also: s.also,
+            p: s.p.map(|c| K::publish(&c)),
+            q: s.q.map(|c| K::publish(&c)),
+            branch: s.branch,
+        };
+        let segment = |s: Segment<K>| Segment {
+            phase: s.phase,
+            from: s.from.publish(),
+            to: s.to.publish(),
+            winding: s.winding,
+            sliding: s.sliding.map(sliding),
+        };
+        let trace = |p: PawlTrace<K>| PawlTrace {
+            name: p.name,
+            events: p.events.into_iter().map(event).collect(),
+            segments: p.segments.into_iter().map(segment).collect(),
+        };
+        Trajectory {
+            phases: self.phases.into_iter().map(phase).collect(),
+            outcome: Outcome {
+                kind: self.outcome.kind,
+                time: self.outcome.time.publish(),
+                phase: self.outcome.phase,
+                pawl: self.outcome.pawl,
+                branches: self.outcome.branches,
+            },
+            pawls: self.pawls.into_iter().map(trace).collect(),
+            ledger: self.ledger,
+        }
+    }
 }

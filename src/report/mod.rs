@@ -6,6 +6,7 @@
 //! the only one that computes in doubles, since an eye cannot tell.
 
 pub mod json;
+pub mod ledger;
 mod layout;
 mod num;
 pub mod picture;

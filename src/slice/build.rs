@@ -6,6 +6,7 @@ use crate::contact::{
 };
 use crate::geometry::Vec2;
 use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
+use crate::number::filter::{self, Stage};
 use crate::number::{Interval, Scalar};
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -35,7 +36,6 @@ impl<K: Kernel> Slice<K> {
         obstacles: &[ObstacleShape<K::Num>],
         limits: Option<&(K::Num, K::Num)>,
     ) -> Slice<K> {
-        K::begin();
         let patches = patches(&frame, pawl, obstacles);
         let mut b = Builder::new(frame, pawl, obstacles);
         for (i, patch) in patches.iter().enumerate() {
@@ -461,6 +461,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
             let settled = filter.as_ref();
             if !settled
                 .and_then(|f| f.valid_graph(Scalar::interval(&s)))
+                .inspect(|_| filter::settled(Stage::Double))
                 .unwrap_or_else(|| valid_graph(patch, chart, &s))
             {
                 continue;

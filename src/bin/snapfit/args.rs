@@ -132,14 +132,32 @@ pub(crate) struct Common {
 #[derive(Args)]
 pub(crate) struct Engine {
     /// Which numbers decide
-    #[arg(long, value_enum, default_value = "exact")]
+    #[arg(long, value_enum, default_value = "filtered")]
     pub(crate) arithmetic: Arithmetic,
+    /// With f64: zeros nearer than this are one
+    #[arg(long, value_name = "DISTANCE", value_parser = tolerance, default_value = "1e-9")]
+    pub(crate) tolerance: f64,
+    /// With f64: which zeros are taken for one
+    #[arg(long, value_enum, default_value = "names")]
+    pub(crate) identify: Identify,
+    /// Which library carries long integers
+    #[arg(long, value_enum, default_value = "num")]
+    pub(crate) backend: Backend,
     /// Which algorithm runs
     #[arg(long, value_enum, default_value = "naive")]
     pub(crate) method: Method,
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time_limit: Option<Duration>,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let t: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    if t.is_finite() && t >= 0.0 {
+        Ok(t)
+    } else {
+        Err("expected a number that is not negative".to_owned())
+    }
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -151,12 +169,30 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Arithmetic {
-    /// Algebraic numbers throughout
+    /// Exact numbers only: the reference, slow
     Exact,
-    /// Doubles first, exact where they cannot tell (not built yet)
+    /// Certified double enclosures first, exact numbers where they cannot tell; the same answers
     Filtered,
-    /// Doubles with a tolerance (not built yet)
+    /// Doubles with a tolerance: fast, and may be wrong
     F64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Identify {
+    /// None
+    None,
+    /// Those nearer than the tolerance
+    Times,
+    /// Those nearer than the tolerance, and those that bear one name
+    Names,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Backend {
+    /// num-bigint
+    Num,
+    /// GMP by rug, where it is built in
+    Rug,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

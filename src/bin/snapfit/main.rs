@@ -15,7 +15,8 @@ use args::{
 use clap::Parser;
 use clap::error::ErrorKind;
 use snapfit::analysis::{self, Ask, Verdict};
-use snapfit::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use snapfit::kernel::{FloatOptions, Identify};
+use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
 use snapfit::report::{picture, pretty, summary};
 use snapfit::scene::{self, Diagnostic, Rendering, SceneFile};
@@ -235,6 +236,7 @@ fn simulated(
             .time_limit
             .and_then(|limit| Instant::now().checked_add(limit)),
         progress: Some(&tell),
+        arithmetic: arithmetic(engine),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
@@ -257,19 +259,37 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
             "--{option} {asked} is not built yet; there is: {built}"
         ))
     };
-    match engine.arithmetic {
-        Arithmetic::Exact => {}
-        Arithmetic::Filtered => return Err(unbuilt("arithmetic", "filtered", "exact")),
-        Arithmetic::F64 => return Err(unbuilt("arithmetic", "f64", "exact")),
+    let backend = match engine.backend {
+        args::Backend::Num => snapfit::number::Backend::Num,
+        args::Backend::Rug => snapfit::number::Backend::Rug,
+    };
+    if !snapfit::number::set_backend(backend) {
+        return Err(unbuilt("backend", backend.name(), "num"));
     }
     match engine.method {
         Method::Naive => {}
         Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
     }
     Ok(Provenance {
-        arithmetic: "exact",
+        arithmetic: arithmetic(engine).name(),
         method: "naive",
     })
+}
+
+/// The arithmetic that the options ask for.
+fn arithmetic(engine: &Engine) -> motion::Arithmetic {
+    match engine.arithmetic {
+        Arithmetic::Exact => motion::Arithmetic::Exact,
+        Arithmetic::Filtered => motion::Arithmetic::Filtered,
+        Arithmetic::F64 => motion::Arithmetic::F64(FloatOptions {
+            tolerance: engine.tolerance,
+            identify: match engine.identify {
+                args::Identify::None => Identify::None,
+                args::Identify::Times => Identify::Times,
+                args::Identify::Names => Identify::Names,
+            },
+        }),
+    }
 }
 
 fn status(trajectory: &Trajectory) -> u8 {
