@@ -12,6 +12,7 @@
 //! * [`number`]: integers and rationals behind one seam, certified intervals, real algebraic
 //!   numbers. No float decides anything; a float may settle a sign that its error bound proves.
 //! * [`geometry`]: points, rational rotations, polygons, exact predicates.
+//! * [`kernel`]: which arithmetic answers; everything from `contact` to `motion` is written over it.
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
@@ -53,6 +54,7 @@ pub mod certificate;
 pub mod contact;
 pub mod face;
 pub mod geometry;
+pub mod kernel;
 pub mod lp;
 pub mod motion;
 pub mod number;

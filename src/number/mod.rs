@@ -14,9 +14,11 @@ mod poly;
 mod rat;
 mod refine;
 mod root;
+mod scalar;
 
 pub use algebraic::Algebraic;
 pub use int::Int;
 pub use interval::Interval;
 pub use poly::Poly;
 pub use rat::Rat;
+pub use scalar::Scalar;
