@@ -109,6 +109,7 @@ pub fn run_lp(args: &LpArgs) -> u8 {
         time_limit,
         memory_limit: args.memory_limit.map(|m| m.saturating_mul(1 << 20)),
         values: args.values,
+        basis: None,
     };
     let name = args.model.to_string_lossy();
     let model = match read(&args.model) {

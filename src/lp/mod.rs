@@ -26,6 +26,6 @@ mod simplex;
 mod solve;
 
 pub use model::{Column, Model, Range, Row};
-pub use outcome::{Certificate, Outcome, Place, Status, Vector};
+pub use outcome::{Certificate, Outcome, Place, Places, Status, Vector};
 pub use read::{LpError, read_model};
 pub use solve::{Accuracy, Method, Options, solve};

@@ -1,6 +1,6 @@
 //! What solving gives: a status, the exact objective, and a certificate that proves both.
 
-use super::basis::{Frame, RowVector, Status as Resting};
+use super::basis::{Basis, Frame, RowVector, Status as Resting};
 use super::model::Model;
 use super::problem::Problem;
 use super::simplex::Verdict;
@@ -72,6 +72,53 @@ pub enum Place {
     Zero,
 }
 
+/// A basis in the model's own terms: which columns and rows are basic, where the others rest.
+///
+/// Every [`Outcome`] of the exact method carries the last one, and [`super::Options::basis`] takes
+/// one as the start for a similar program. As a start it need not fit: lists that are too short
+/// or too long, places without a bound, a wrong number of basic ones or a singular choice are all
+/// repaired, since exact arithmetic decides in any case.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Places {
+    /// Places of the columns.
+    pub columns: Vec<Place>,
+    /// Places of the rows' activities.
+    pub rows: Vec<Place>,
+}
+
+impl Places {
+    pub(crate) fn of(basis: &Basis, n: usize) -> Places {
+        let place = |s: &Resting| match s {
+            Resting::Basic => Place::Basic,
+            Resting::Lower => Place::Lower,
+            Resting::Upper => Place::Upper,
+            Resting::Zero => Place::Zero,
+        };
+        Places {
+            columns: basis.status[..n].iter().map(place).collect(),
+            rows: basis.status[n..].iter().map(place).collect(),
+        }
+    }
+
+    /// The basis of a problem that this means. Columns that are not mentioned rest, rows that are
+    /// not mentioned are basic (slack).
+    pub(crate) fn basis(&self, problem: &Problem) -> Basis {
+        let mut basis = Basis::slack(problem);
+        let (columns, rows) = basis.status.split_at_mut(problem.n);
+        let given = self.columns.iter().zip(columns);
+        for (place, slot) in given.chain(self.rows.iter().zip(rows)) {
+            *slot = match place {
+                Place::Basic => Resting::Basic,
+                Place::Lower => Resting::Lower,
+                Place::Upper => Resting::Upper,
+                Place::Zero => Resting::Zero,
+            };
+        }
+        basis.tidy(problem);
+        basis
+    }
+}
+
 /// What proves a result. Vectors are in the model's own terms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Certificate {
@@ -139,6 +186,9 @@ pub struct Outcome {
     pub accuracy: &'static str,
     /// The proof; `None` where nothing is decided, or for `float`.
     pub certificate: Option<Certificate>,
+    /// The last basis of the exact method: the optimal one where there is an optimum. None where
+    /// that method was not reached.
+    pub basis: Option<Places>,
     /// Values of the columns, where asked for.
     pub values: Option<Vec<Rat>>,
     /// Prices of the rows, where asked for.
@@ -160,6 +210,7 @@ impl Outcome {
             method: "exact",
             accuracy: "exact",
             certificate: None,
+            basis: None,
             values: None,
             prices: None,
             exact_pivots: 0,
@@ -176,6 +227,7 @@ const VECTOR_BITS: u64 = 4_000_000;
 pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) -> Outcome {
     let mut out = Outcome::undecided("");
     out.reason = None;
+    out.basis = Some(Places::of(verdict.basis(), model.columns.len()));
     match verdict {
         Verdict::Optimal {
             frame,
@@ -219,15 +271,10 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
             }
             if out.certificate.is_none() {
                 let (rows, columns) = frame.kernel.order();
-                let place = |s: &Resting| match s {
-                    Resting::Basic => Place::Basic,
-                    Resting::Lower => Place::Lower,
-                    Resting::Upper => Place::Upper,
-                    Resting::Zero => Place::Zero,
-                };
+                let places = Places::of(&frame.basis, p.n);
                 out.certificate = Some(Certificate::Basis {
-                    columns: frame.basis.status[..p.n].iter().map(place).collect(),
-                    rows: frame.basis.status[p.n..].iter().map(place).collect(),
+                    columns: places.columns,
+                    rows: places.rows,
                     order: rows
                         .iter()
                         .zip(columns)

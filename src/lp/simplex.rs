@@ -43,6 +43,17 @@ pub(crate) enum Verdict<'a> {
     },
 }
 
+impl Verdict<'_> {
+    /// The basis it was reached at.
+    pub(crate) fn basis(&self) -> &Basis {
+        match self {
+            Verdict::Optimal { frame, .. }
+            | Verdict::Infeasible { frame, .. }
+            | Verdict::Unbounded { frame, .. } => &frame.basis,
+        }
+    }
+}
+
 /// What a run took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Effort {

@@ -4,7 +4,7 @@ use super::basis::Basis;
 use super::budget::Budget;
 use super::float;
 use super::model::Model;
-use super::outcome::{Certificate, Outcome, Status, conclude};
+use super::outcome::{Certificate, Outcome, Places, Status, conclude};
 use super::problem::Problem;
 use super::simplex::{self, Effort};
 use crate::number::Rat;
@@ -34,7 +34,7 @@ pub enum Accuracy {
 }
 
 /// What a caller may choose.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// Who finds the basis.
     pub method: Method,
@@ -46,6 +46,9 @@ pub struct Options {
     pub memory_limit: Option<u64>,
     /// Whether to write out all values and prices.
     pub values: bool,
+    /// A basis to start from, as [`Outcome::basis`] gives it: that of a similar program saves
+    /// most of the work. It need not fit, see [`Places`].
+    pub basis: Option<Places>,
 }
 
 /// Solves a model.
@@ -80,20 +83,26 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         return out;
     }
     let mut effort = Effort::default();
-    let mut start = Basis::slack(&problem);
+    let given = options.basis.as_ref().map(|b| b.basis(&problem));
     let mut iterations = 0;
-    if options.method == Method::Warm {
-        let proposal = float::propose(&problem, budget);
+    let start = if options.method == Method::Warm {
+        let proposal = float::propose(&problem, given.as_ref(), budget);
         iterations = proposal.iterations;
         if options.accuracy == Accuracy::Float {
             return unproven(model, &proposal);
         }
-        start = proposal.basis;
-    }
+        proposal.basis
+    } else {
+        given.unwrap_or_else(|| Basis::slack(&problem))
+    };
     let run = simplex::run(&problem, start, budget, &mut effort);
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
-        Err(_) => Outcome::undecided("a limit was reached"),
+        Err((_, last)) => {
+            let mut out = Outcome::undecided("a limit was reached");
+            out.basis = Some(Places::of(&last, problem.n));
+            out
+        }
     };
     outcome.float_iterations = iterations;
     outcome.exact_pivots = effort.pivots;

@@ -221,6 +221,19 @@ impl Program {
         Basis { status: out }
     }
 
+    /// The reverse of [`Program::basis`]: statuses of this program for a basis of the problem.
+    pub(crate) fn statuses(&self, p: &Problem, basis: &Basis) -> Vec<Status> {
+        if !self.dualised {
+            return basis.status.clone();
+        }
+        let flip = |v: usize, own: usize| match basis.status[v] {
+            Status::Basic => super::engine::rest(self.lower[own], self.upper[own]),
+            _ => Status::Basic,
+        };
+        let rows = (0..p.m).map(|i| flip(p.n + i, i));
+        rows.chain((0..p.n).map(|j| flip(j, self.n + j))).collect()
+    }
+
     /// The column of a variable: entries of a column, or −1 for a logical.
     pub(crate) fn each(&self, v: usize, mut f: impl FnMut(usize, f64)) {
         if v < self.n {

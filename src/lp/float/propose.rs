@@ -24,8 +24,8 @@ const LARGE: usize = 33_000;
 /// The same for programs that are dualised, where rows abound.
 const LARGE_DUALISED: usize = 2_500;
 
-/// Proposes a basis for the problem.
-pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
+/// Proposes a basis for the problem, from a given one if there is one.
+pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget) -> Proposal {
     let direct = Program::new(problem);
     let program = direct.dual().unwrap_or_else(|| direct.clone());
     let entries = direct.columns.index.len();
@@ -54,7 +54,17 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     };
     let sizes = (program.n + program.m) as u64;
     let mut done = false;
-    if large && let Some(mut engine) = from_interior(1.0) {
+    if let Some(basis) = start {
+        let mut engine = Engine::new(&program, program.statuses(problem, basis));
+        // A start that needs more than this was none.
+        engine.most = 500 + program.m as u64 / 2;
+        let ending = engine.optimise(false, budget);
+        done = take(&engine, ending);
+    }
+    if !done
+        && large
+        && let Some(mut engine) = from_interior(1.0)
+    {
         engine.most = 2 * sizes + 1000;
         let ending = engine.optimise(false, budget);
         done = take(&engine, ending);
