@@ -11,7 +11,7 @@ mod layout;
 mod num;
 pub mod picture;
 pub mod summary;
-mod theta;
+pub(crate) mod theta;
 mod words;
 
 pub use layout::pretty;

@@ -37,6 +37,8 @@ pub(crate) enum Verb {
     Lp(snapfit::lp::cli::LpArgs),
     /// Check a linear program's certificate with code of its own
     Verify(snapfit::lp::cli::VerifyArgs),
+    /// Speed against accuracy over the arithmetics: table, JSON and plot
+    Trade(super::trade::Trade),
     /// Print the JSON Schema of a file format
     Schema(Schema),
 }
@@ -151,7 +153,7 @@ pub(crate) struct Engine {
     pub(crate) time_limit: Option<Duration>,
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     let t: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
     if t.is_finite() && t >= 0.0 {
         Ok(t)
@@ -160,7 +162,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
         .map_err(|_| "expected a number of seconds".to_owned())?;

@@ -7,6 +7,7 @@
 mod args;
 mod output;
 mod progress;
+mod trade;
 
 use args::{
     Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
@@ -72,6 +73,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         }
         Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
+        Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
