@@ -52,6 +52,7 @@ pub mod analysis;
 pub mod certificate;
 pub mod contact;
 pub mod face;
+pub mod flex;
 pub mod geometry;
 pub mod lp;
 pub mod motion;
