@@ -54,6 +54,7 @@ pub mod analysis;
 pub mod certificate;
 pub mod contact;
 pub mod face;
+pub mod flex;
 pub mod geometry;
 pub mod kernel;
 pub mod lp;

@@ -195,6 +195,19 @@ impl Fix {
             bits: self.bits,
         }
     }
+    /// What lies in both: two enclosures of one value.
+    pub fn meet(&self, o: &Fix) -> Fix {
+        let lo = self.lo.clone().max(o.lo.clone());
+        let hi = self.hi.clone().min(o.hi.clone());
+        if lo > hi {
+            return self.join(o);
+        }
+        Fix {
+            lo,
+            hi,
+            bits: self.bits,
+        }
+    }
     /// The arctangent. Monotone, so each end is enclosed by itself.
     pub fn atan(&self) -> Fix {
         let end = |v: &Int| {

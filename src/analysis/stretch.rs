@@ -28,6 +28,7 @@
 //! A stretch is the part of a segment that lies in one chart, where all of this is a quotient of
 //! polynomials in the chart position x, and x is monotone.
 
+use super::fix::{Bits, Fix};
 use super::qpoly::QPoly;
 use crate::contact::{Chart, Contact, ContactKind, ObstacleShape, PawlShape, Trig};
 use crate::geometry::Vec2;
@@ -184,33 +185,68 @@ impl Curve<'_> {
         if let Some(r) = rational {
             return self.at(&r, winding).unwrap_or_else(Angle::rest);
         }
+        // At constant θ any instant tells it: its place is a root of P and of Q.
+        let mid = Time::between(&segment.from, &segment.to);
+        if let Some(a) = self.at(&mid, winding) {
+            let parts = [self.p, self.q].map(|c| Self::in_chart(c, a.chart()));
+            let later = Time::between(&Time::from(mid.clone()), &segment.to);
+            if parts.iter().all(|p| a.x.sign_of(p) == 0)
+                && self.at(&later, winding).is_some_and(|b| b == a)
+            {
+                return a;
+            }
+        }
+        // Else x = ±1 would make the instant rational, so refining settles the chart.
         let exact = t.exact();
-        let at = |r: &Rat| {
-            // Only instants within the segment lie on its branch.
-            let r = if segment.from.cmp_rat(r).is_gt() || segment.to.cmp_rat(r).is_lt() {
-                Time::between(&segment.from, &segment.to)
-            } else {
-                r.clone()
-            };
-            self.at(&r, winding).unwrap_or_else(Angle::rest)
+        let place = |chart: Chart, bits: u32| {
+            let (lo, hi) = exact.enclosure(bits);
+            let b = Bits(u64::from(bits) + 16);
+            self.enclosed(chart, &b.hull(&lo, &hi), b)
         };
         let mut bits = 32;
         loop {
-            let (lo, hi) = exact.enclosure(bits);
-            let (a, b) = (at(&lo), at(&hi));
-            bits *= 2;
-            if a.chart() != b.chart() && bits < 4096 {
-                continue;
+            for chart in Chart::BOTH {
+                let Some(x) = place(chart, bits) else {
+                    continue;
+                };
+                if (bits < 1 << 14 || chart == Chart::Back)
+                    && (x.lo() <= Rat::from(-1) || x.hi() >= Rat::one())
+                {
+                    continue;
+                }
+                let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
+                let x = exact.root_over(&p, &q, &mut |bits| {
+                    let mut more = bits;
+                    loop {
+                        if let Some(x) = place(chart, more) {
+                            return (x.lo(), x.hi());
+                        }
+                        more *= 2;
+                    }
+                });
+                return angle_of(chart, x, winding);
             }
-            let chart = a.chart();
-            let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
-            let x = exact.root_over(&p, &q, &mut |bits| {
-                let (lo, hi) = exact.enclosure(bits);
-                let (a, b) = (at(&lo).x, at(&hi).x);
-                let (a, b) = if a <= b { (a, b) } else { (b, a) };
-                (a.enclosure(bits).0, b.enclosure(bits).1)
-            });
-            return angle_of(chart, x, winding);
+            bits *= 2;
+        }
+    }
+    /// The place in a chart at an enclosed instant of the segment; None where more bits are
+    /// needed.
+    pub(super) fn enclosed(&self, chart: Chart, t: &Fix, b: Bits) -> Option<Fix> {
+        let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
+        let [c, half, a] = [0, 1, 2].map(|k| {
+            let at = |f: &Poly| b.rat(&Rat::from(f.coeff(k)));
+            at(&p).add(&t.mul(&at(&q)))
+        });
+        let four = b.int(4);
+        let root = half.mul(&half).sub(&four.mul(&a).mul(&c)).sqrt()?;
+        let root = root.mul(&b.int(i64::from(self.branch)));
+        let two = b.int(2);
+        // Two forms of one root: each is poor where the other is good.
+        let near = root.sub(&half).div(&a.mul(&two));
+        let far = c.mul(&two).div(&half.add(&root).neg());
+        match (near, far) {
+            (Some(x), Some(y)) => Some(x.meet(&y)),
+            (x, y) => x.or(y),
         }
     }
 }

@@ -12,7 +12,9 @@
 //! fixed: such a run is a run of the simplex method on *one* program, where an infeasible
 //! variable has its violated bound as its only one. After [`PATIENCE`] steps of length zero the
 //! choice of both variables is by least index among the candidates (Bland's rule) until a step
-//! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least). There are finitely many statuses.
+//! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least).
+//! There are finitely many statuses, and the method changes at most three times: the search for a
+//! feasible point that [`run`] may begin with ends in one, after which the primal method keeps it.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
 use super::budget::{Budget, Exhausted};
@@ -74,9 +76,14 @@ enum Step<'a> {
 }
 
 /// Runs the exact simplex method from a basis (repaired if singular) to the end.
+///
+/// `blame` is a basic variable that floating point holds for irreparable. The question is then
+/// first whether there is any feasible point: costs are taken for zero, for which every basis is
+/// dual feasible, until the dual method has brought a feasible basis or a proof that there is none.
 pub(crate) fn run<'a>(
     problem: &'a Problem,
     start: Basis,
+    blame: Option<usize>,
     budget: &Budget,
     effort: &mut Effort,
 ) -> Result<Verdict<'a>, (Exhausted, Basis)> {
@@ -84,11 +91,18 @@ pub(crate) fn run<'a>(
     let mut stalled = 0;
     let mut regular = false;
     let mut guesses = [None, None, None];
+    let mut seeking = blame;
     loop {
         let frame = Frame::new(problem, basis, regular);
         regular = true;
         let before = frame.basis.clone();
-        match step(frame, stalled >= PATIENCE, &mut guesses, budget) {
+        match step(
+            frame,
+            stalled >= PATIENCE,
+            &mut seeking,
+            &mut guesses,
+            budget,
+        ) {
             Ok(Step::Done(verdict)) => return Ok(*verdict),
             Ok(Step::Move {
                 basis: next,
@@ -108,6 +122,7 @@ type Guesses = [Option<Int>; 3];
 fn step<'a>(
     frame: Frame<'a>,
     bland: bool,
+    seeking: &mut Option<usize>,
     guesses: &mut Guesses,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
@@ -120,6 +135,18 @@ fn step<'a>(
         .map(|v| (v, breach(&frame, &values, v)))
         .collect();
     let infeasible = breaches.iter().any(|b| b.1 != Breach::None);
+    if !infeasible {
+        *seeking = None;
+    }
+    if let Some(first) = *seeking {
+        let none = frame.price(|_| Int::zero(), Some(&Int::one()), budget)?;
+        let wrong = |b: &&(usize, Breach)| b.0 == first && b.1 != Breach::None;
+        let breaches = match breaches.iter().find(wrong) {
+            Some(b) if !bland => std::slice::from_ref(b),
+            _ => &breaches[..],
+        };
+        return dual_step(frame, &values, breaches, &none, bland, guesses, budget);
+    }
     let duals = frame.price(|v| cost(p, v), guesses[0].as_ref(), budget)?;
     let improving = entering(&frame, &duals, bland);
     if !infeasible {

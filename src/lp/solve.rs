@@ -85,9 +85,11 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut effort = Effort::default();
     let given = options.basis.as_ref().map(|b| b.basis(&problem));
     let mut iterations = 0;
+    let mut blame = None;
     let start = if options.method == Method::Warm {
         let proposal = float::propose(&problem, given.as_ref(), budget);
         iterations = proposal.iterations;
+        blame = proposal.blame;
         if options.accuracy == Accuracy::Float {
             return unproven(model, &proposal);
         }
@@ -95,7 +97,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     } else {
         given.unwrap_or_else(|| Basis::slack(&problem))
     };
-    let run = simplex::run(&problem, start, budget, &mut effort);
+    let run = simplex::run(&problem, start, blame, budget, &mut effort);
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err((_, last)) => {

@@ -33,6 +33,10 @@ pub(crate) enum Verb {
     Render(Render),
     /// The face of bare arcs that holds the start
     Face(snapfit::face::Args),
+    /// Flex a structure of loosely joined bodies as far as it goes (PuzzleFlex)
+    Flex(crate::flex::FlexArgs),
+    /// Write a structure of one of the paper's families
+    Generate(crate::flex::GenerateArgs),
     /// Solve a linear program exactly: status, objective and certificate
     Lp(snapfit::lp::cli::LpArgs),
     /// Check a linear program's certificate with code of its own
@@ -217,6 +221,8 @@ pub(crate) enum Format {
 pub(crate) enum Name {
     /// The scene file
     Scene,
+    /// The structure file
+    Structure,
     /// The result of `simulate`
     Result,
 }

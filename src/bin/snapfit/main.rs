@@ -5,6 +5,7 @@
 //! given, 4 decided but not as expected, 1 a bug.
 
 mod args;
+mod flex;
 mod output;
 mod progress;
 mod trade;
@@ -71,12 +72,15 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
             output::write(None, &(text + "\n"))?;
             Ok(DECIDED)
         }
+        Verb::Flex(args) => flex::run_flex(args),
+        Verb::Generate(args) => flex::run_generate(args),
         Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
+                Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
             };
             let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
@@ -157,7 +161,11 @@ fn run_forces(args: &Forces) -> Result<u8, Failure> {
 }
 
 fn run_check(args: &Check) -> Result<u8, Failure> {
-    let file = read(&args.common)?;
+    let (name, bytes) = read_bytes(&args.common)?;
+    if snapfit::flex::is_structure(&name, &bytes) {
+        return flex::run_check(&args.common, &name, &bytes, args.format);
+    }
+    let file = parse(&args.common, &name, &bytes)?;
     let report = scene::check(&file);
     let text = match format_of(args.format, &args.common) {
         Format::Json => {
@@ -192,6 +200,12 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
 
 /// Reads the scene that is asked for; `-` is standard input.
 fn read(common: &Common) -> Result<SceneFile, Failure> {
+    let (name, bytes) = read_bytes(common)?;
+    parse(common, &name, &bytes)
+}
+
+/// The bytes of the file that is asked for, and its name for messages.
+fn read_bytes(common: &Common) -> Result<(String, Vec<u8>), Failure> {
     output::spare_input(&common.file, common.out.as_deref())?;
     let mut bytes = Vec::new();
     let (name, done) = if common.file == Path::new("-") {
@@ -204,6 +218,11 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
         (name, std::fs::read(&common.file).map(|b| bytes = b))
     };
     done.map_err(|e| format!("{name}: {e}"))?;
+    Ok((name, bytes))
+}
+
+/// The overrides of `--set`.
+fn overrides(common: &Common) -> Result<Vec<(&str, &str)>, Failure> {
     let mut overrides = Vec::new();
     for set in &common.set {
         match set.split_once('=') {
@@ -211,8 +230,12 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
             None => return Err(format!("--set {set}: expected NAME=VALUE").into()),
         }
     }
-    let file = scene::read_scene_bytes(&name, &bytes, &overrides).map_err(Failure::Scene)?;
-    Ok(file)
+    Ok(overrides)
+}
+
+fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<SceneFile, Failure> {
+    let overrides = overrides(common)?;
+    scene::read_scene_bytes(name, bytes, &overrides).map_err(Failure::Scene)
 }
 
 fn simulated(

@@ -162,6 +162,7 @@ impl Engine<'_> {
                     continue;
                 }
                 if excess.abs() > CLEAR {
+                    self.blame = Some(out);
                     return Ok(Ending::Infeasible);
                 }
                 skipped[r] = true; // too little to tell: exact arithmetic will
@@ -176,6 +177,7 @@ impl Engine<'_> {
                     continue;
                 }
                 if slope > CLEAR {
+                    self.blame = Some(out);
                     return Ok(Ending::Infeasible);
                 }
                 skipped[r] = true;

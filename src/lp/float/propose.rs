@@ -15,6 +15,8 @@ pub(crate) struct Proposal {
     pub(crate) basis: Basis,
     pub(crate) iterations: u64,
     pub(crate) ending: Ending,
+    /// Where the program seemed infeasible, the basic variable that cannot be repaired.
+    pub(crate) blame: Option<usize>,
     /// The objective as minimised, without the model's constant.
     pub(crate) objective: f64,
 }
@@ -36,12 +38,17 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
             LARGE
         };
     let mut iterations = 0;
-    let mut best: Option<(Vec<Status>, Ending, f64)> = None;
+    let mut best: Option<(Vec<Status>, Ending, f64, Option<usize>)> = None;
     let mut take = |engine: &Engine<'_>, ending: Result<Ending, Exhausted>| {
         iterations += engine.iterations;
         let ending = ending.unwrap_or(Ending::Stuck);
         if best.is_none() || ending != Ending::Stuck {
-            best = Some((engine.status.clone(), ending, engine.objective()));
+            best = Some((
+                engine.status.clone(),
+                ending,
+                engine.objective(),
+                engine.blame,
+            ));
         }
         ending != Ending::Stuck
     };
@@ -65,7 +72,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
         && large
         && let Some(mut engine) = from_interior(1.0)
     {
-        engine.most = 2 * sizes + 1000;
+        engine.most = program.m as u64 + 1000;
         let ending = engine.optimise(false, budget);
         done = take(&engine, ending);
     }
@@ -83,11 +90,18 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
         let ending = engine.optimise(false, budget);
         take(&engine, ending);
     }
-    let (status, ending, objective) =
-        best.unwrap_or_else(|| (Engine::slack(&program).status, Ending::Stuck, f64::NAN));
+    let (status, ending, objective, blame) = best.unwrap_or_else(|| {
+        (
+            Engine::slack(&program).status,
+            Ending::Stuck,
+            f64::NAN,
+            None,
+        )
+    });
     Proposal {
         basis: program.basis(problem, &status),
         iterations,
+        blame: blame.filter(|_| ending == Ending::Infeasible && !program.dualised),
         ending: match ending {
             // What the dual says of the dual.
             Ending::Infeasible | Ending::Unbounded if program.dualised => Ending::Stuck,
