@@ -221,7 +221,7 @@ impl Outcome {
 }
 
 /// Bits of vectors up to which a certificate carries them.
-const VECTOR_BITS: u64 = 4_000_000;
+pub(crate) const VECTOR_BITS: u64 = 4_000_000;
 
 /// Turns the exact method's verdict into a result in the model's terms.
 pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) -> Outcome {
@@ -364,7 +364,7 @@ fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
 }
 
 /// Values of the columns, unscaled.
-fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
+pub(crate) fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
     let p = frame.problem;
     let d = &values.solution.denominator;
     let mut numerators = Vec::new();
@@ -385,7 +385,7 @@ fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
 }
 
 /// Prices of the rows, unscaled; `scale` is that of the costs.
-fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
+pub(crate) fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
     let p: &Problem = frame.problem;
     let denominator = &y.solution.denominator * &scale.abs();
     let sign = Rat::from(i64::from(scale.sign()));
