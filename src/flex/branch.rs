@@ -28,6 +28,7 @@ pub(crate) struct Solved {
     pub(crate) direction: Option<Vec<[f64; 3]>>,
     pub(crate) facing: usize,
     pub(crate) programs: usize,
+    pub(crate) exact_pivots: u64,
     pub(crate) verified: Option<bool>,
     pub(crate) certificate: serde_json::Value,
 }
@@ -44,22 +45,25 @@ pub(crate) fn solve(
     let scaffold = &run.scaffold;
     if run.options.corners == Corners::Average || facing.is_empty() {
         let model = scaffold.program(rows, poses);
-        let outcome = lp::solve(&model, &run.lp_options());
+        let outcome = lp::solve(&model, &run.lp_options(rows));
+        run.remember(rows, &outcome);
         return conclude(run, &model, &outcome, facing.len(), 1, None);
     }
     let choices: Vec<[Row; 4]> = facing
         .iter()
         .map(|f| scaffold.choices(f).map(|p| scaffold.row(&p, placed)))
         .collect();
-    let program = |taken: &[Option<u8>]| {
+    let all = |taken: &[Option<u8>]| -> Vec<Row> {
         let chosen = taken.iter().zip(&choices);
         let more = chosen.filter_map(|(t, four)| t.map(|t| four[t as usize].clone()));
-        let all: Vec<Row> = rows.iter().cloned().chain(more).collect();
-        scaffold.program(&all, poses)
+        rows.iter().cloned().chain(more).collect()
     };
+    let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses);
     let solved = |taken: &[Option<u8>]| {
-        let model = program(taken);
-        let outcome = lp::solve(&model, &run.lp_options());
+        let rows = all(taken);
+        let model = scaffold.program(&rows, poses);
+        let outcome = lp::solve(&model, &run.lp_options(&rows));
+        run.remember(&rows, &outcome);
         (model, outcome)
     };
     let mut programs = 1;
@@ -154,7 +158,7 @@ pub(crate) fn solve(
                 } else {
                     Status::Undecided
                 },
-                ..lp::solve(&Model::new("flex"), &run.lp_options())
+                ..lp::solve(&Model::new("flex"), &run.lp_options(&[]))
             },
             facing.len(),
             programs,
@@ -204,8 +208,7 @@ fn activity(scaffold: &Scaffold, row: &Row, direction: &[[f64; 3]]) -> f64 {
 
 /// The values of an outcome by body.
 fn directions(scaffold: &Scaffold, outcome: &Outcome) -> Vec<[f64; 3]> {
-    let values = outcome.values.as_deref().unwrap_or(&[]);
-    let at = |c: Option<usize>| c.and_then(|c| values.get(c)).map_or(0.0, double);
+    let at = |c: Option<usize>| c.and_then(|c| outcome.near.get(c)).copied().unwrap_or(0.0);
     (0..scaffold.forms.len())
         .map(|b| scaffold.column(b).map(at))
         .collect()
@@ -235,10 +238,11 @@ fn conclude(
         status: outcome.status,
         objective: outcome.objective.clone().unwrap_or_else(Rat::zero),
         enclosure,
-        direction: (outcome.status == Status::Optimal && outcome.values.is_some())
+        direction: (outcome.status == Status::Optimal && !outcome.near.is_empty())
             .then(|| directions(&run.scaffold, outcome)),
         facing,
         programs,
+        exact_pivots: outcome.exact_pivots,
         verified,
         certificate: report["certificate"].take(),
     }

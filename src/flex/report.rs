@@ -60,6 +60,8 @@ pub struct StepDocument {
     pub programs: usize,
     /// Convex corners that face each other.
     pub facing: usize,
+    /// Pivots of the exact simplex method.
+    pub exact_pivots: u64,
 }
 
 /// A body's place.
@@ -129,6 +131,7 @@ impl FlexDocument {
                     model_seconds: s.model_seconds,
                     programs: s.programs,
                     facing: s.facing,
+                    exact_pivots: s.exact_pivots,
                 })
                 .collect(),
             path: structure.step.path.word(),

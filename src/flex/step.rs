@@ -16,8 +16,10 @@ use super::model::{Form, Row, Scaffold};
 use super::pairs::{Pair, Selection, select};
 use super::shape::{Placed, Pose, double};
 use super::types::Structure;
-use crate::lp::{self, Status};
+use crate::lp::{self, Place, Places, Status};
 use crate::number::{Algebraic, Int, Poly, Rat};
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 /// What facing convex corners become (PF §V-A).
@@ -105,6 +107,8 @@ pub struct Step {
     pub facing: usize,
     /// Programs solved for this step.
     pub programs: usize,
+    /// Pivots of the exact method, over these programs' last.
+    pub exact_pivots: u64,
     /// Wall-clock time of the step: model, program, search.
     pub seconds: f64,
     /// Part of it that went into pairs and rows.
@@ -166,7 +170,11 @@ pub(crate) struct Run<'a> {
     pub(crate) options: &'a FlexOptions<'a>,
     pub(crate) deadline: Option<Instant>,
     grain: Grain,
+    /// The last optimal basis: places of the columns, and of rows by pair.
+    memory: RefCell<Option<Memory>>,
 }
+
+type Memory = (Vec<Place>, HashMap<Pair, Place>);
 
 /// Radii of rounding.
 #[derive(Clone, Copy, Debug)]
@@ -211,6 +219,7 @@ impl<'a> Run<'a> {
             grain: Grain::of(grain, reach),
             scaffold,
             options,
+            memory: RefCell::new(None),
             deadline: options
                 .time_limit
                 .and_then(|t| Instant::now().checked_add(t)),
@@ -221,17 +230,33 @@ impl<'a> Run<'a> {
         self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
-    /// What the programs may still take.
-    pub(crate) fn lp_options(&self) -> lp::Options {
+    /// What the program of these rows may still take, and the last basis as its start.
+    pub(crate) fn lp_options(&self, rows: &[Row]) -> lp::Options {
+        let memory = self.memory.borrow();
+        let basis = memory.as_ref().map(|(columns, places)| Places {
+            columns: columns.clone(),
+            // A row that is new is slack until shown otherwise.
+            rows: rows
+                .iter()
+                .map(|r| places.get(&r.pair).copied().unwrap_or(Place::Basic))
+                .collect(),
+        });
         lp::Options {
             method: self.options.method,
             accuracy: self.options.accuracy,
             time_limit: self
                 .deadline
                 .map(|d| d.saturating_duration_since(Instant::now())),
-            memory_limit: None,
-            values: true,
-            basis: None,
+            basis,
+            ..lp::Options::default()
+        }
+    }
+
+    /// Keeps an optimal basis for the next program, by the names of the rows.
+    pub(crate) fn remember(&self, rows: &[Row], outcome: &lp::Outcome) {
+        if let (Status::Optimal, Some(basis)) = (outcome.status, &outcome.basis) {
+            let places = rows.iter().map(|r| r.pair).zip(basis.rows.iter().copied());
+            *self.memory.borrow_mut() = Some((basis.columns.clone(), places.collect()));
         }
     }
 
@@ -339,6 +364,7 @@ impl<'a> Run<'a> {
             rows: rows.len(),
             facing: solved.facing,
             programs: solved.programs,
+            exact_pivots: solved.exact_pivots,
             seconds: begin.elapsed().as_secs_f64(),
             model_seconds,
             verified: solved.verified,
