@@ -86,8 +86,17 @@ pub(crate) struct Forces {
     #[command(flatten)]
     pub(crate) engine: Engine,
     /// Significant digits of every enclosure
-    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) digits: u32,
+    /// Instants of each phase at which the histories are given
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=10000))]
+    pub(crate) samples: u32,
+    /// Draw force over travel as SVG, to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]

@@ -149,7 +149,12 @@ fn run_classify(args: &Classify) -> Result<u8, Failure> {
 
 fn run_forces(args: &Forces) -> Result<u8, Failure> {
     let file = read(&args.common)?;
-    let document = analysis::forces(file.scene(), args.digits, &ask(&args.engine)?)
+    let wish = analysis::Wish {
+        digits: args.digits,
+        samples: args.samples,
+        draw: args.svg.is_some(),
+    };
+    let document = analysis::forces(file.scene(), &wish, &ask(&args.engine)?)
         .map_err(|error| misplanned(&file, &error))?;
     let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
     output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
