@@ -104,7 +104,10 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         blame = proposal.blame;
         guess = (proposal.point.clone(), proposal.prices.clone());
         if options.accuracy == Accuracy::Float {
-            return unproven(model, &proposal);
+            return Outcome {
+                near: guess.0,
+                ..unproven(model, &proposal)
+            };
         }
         proposal.basis
     } else {
@@ -116,6 +119,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
             let mut out = Outcome::undecided("");
             known.publish(model, &mut out);
             out.float_iterations = iterations;
+            out.near = guess.0;
             return out;
         }
     }
@@ -152,6 +156,9 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
             out
         }
     };
+    if outcome.near.is_empty() {
+        outcome.near = guess.0;
+    }
     outcome.float_iterations = iterations;
     outcome.exact_pivots = effort.pivots;
     outcome

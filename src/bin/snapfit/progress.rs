@@ -50,12 +50,16 @@ impl Spinner {
     }
 
     pub(crate) fn tell(&self, p: Progress) {
+        let (phase, pawl) = (p.phase, p.pawl);
+        self.say(format!(
+            "phase {phase} of {}, pawl {pawl}: {} arcs",
+            p.phases, p.arcs
+        ));
+    }
+
+    pub(crate) fn say(&self, text: String) {
         if let Some(news) = &self.news {
-            let (phase, pawl) = (p.phase, p.pawl);
-            let _ = news.send(format!(
-                "phase {phase} of {}, pawl {pawl}: {} arcs",
-                p.phases, p.arcs
-            ));
+            let _ = news.send(text);
         }
     }
 }
