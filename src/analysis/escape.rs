@@ -145,6 +145,7 @@ impl<'a> Ground<'a> {
                     phase: 0,
                     probe: collision.as_ref().map(|c| &c.0),
                     stop: &stop,
+                    method: crate::motion::Method::Naive,
                 };
                 run(&slice, &set, &start.angles[i], &[])
             })

@@ -1,7 +1,7 @@
 //! Plans: phases one after the other, all pawls and the root together.
 
 use super::ledger::{Ledger, PhaseCost};
-use super::phase::{Run, Setting, run};
+use super::phase::{Method, Run, Setting, run};
 use super::root::{first_collision, obstacle_polygon};
 use super::trajectory::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
@@ -27,6 +27,8 @@ pub struct Options<'a> {
     pub progress: Option<&'a dyn Fn(Progress)>,
     /// Which numbers decide.
     pub arithmetic: Arithmetic,
+    /// Which algorithm runs.
+    pub method: Method,
 }
 
 /// Which numbers decide.
@@ -48,6 +50,16 @@ impl Arithmetic {
             Arithmetic::Filtered => "filtered",
             Arithmetic::Exact => "exact",
             Arithmetic::F64(_) => "f64",
+        }
+    }
+}
+
+impl Method {
+    /// What runs under an arithmetic: doubles cannot vouch for F, so they scan.
+    pub fn under(self, arithmetic: &Arithmetic) -> Method {
+        match arithmetic {
+            Arithmetic::F64(_) => Method::Naive,
+            _ => self,
         }
     }
 }
@@ -194,6 +206,7 @@ fn simulate_with<K: Kernel>(
                 phase: index,
                 probe: plan.collision.as_ref().map(|c| &c.0),
                 stop: &stop,
+                method: options.method,
             };
             let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));

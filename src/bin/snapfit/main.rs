@@ -260,6 +260,7 @@ fn simulated(
             .and_then(|limit| Instant::now().checked_add(limit)),
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
+        method: method(engine),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
@@ -289,14 +290,19 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     if !snapfit::number::set_backend(backend) {
         return Err(unbuilt("backend", backend.name(), "num"));
     }
-    match engine.method {
-        Method::Naive => {}
-        Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
-    }
+    let arithmetic = arithmetic(engine);
     Ok(Provenance {
-        arithmetic: arithmetic(engine).name(),
-        method: "naive",
+        arithmetic: arithmetic.name(),
+        method: method(engine).under(&arithmetic).name(),
     })
+}
+
+/// The algorithm that the options ask for.
+fn method(engine: &Engine) -> motion::Method {
+    match engine.method {
+        Method::Sweep => motion::Method::Sweep,
+        Method::Naive => motion::Method::Naive,
+    }
 }
 
 /// The arithmetic that the options ask for.
