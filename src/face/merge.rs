@@ -33,6 +33,12 @@ pub(crate) struct Face {
 
 /// The face of arcs that know nothing of each other, by walking.
 pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, OnArc> {
+    let (mut items, comps, ends) = arcs_alone(arcs);
+    trace(k, &mut items, &comps, ends, start)
+}
+
+/// Arcs as items to walk on: each with ends and a component of its own.
+pub(super) fn arcs_alone(arcs: &[Item]) -> (Vec<Item>, Vec<Comp>, Vec<Point>) {
     let mut items = Vec::with_capacity(arcs.len());
     let mut comps = Vec::with_capacity(arcs.len());
     let mut ends = Vec::with_capacity(2 * arcs.len());
@@ -56,7 +62,7 @@ pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, 
             item: i as u32,
         });
     }
-    trace(k, &mut items, &comps, ends, start)
+    (items, comps, ends)
 }
 
 /// The face of several faces' edges, each face a colour.

@@ -169,14 +169,14 @@ impl Question<'_> {
     }
 }
 
-fn why(d: Defect) -> &'static str {
+pub(super) fn why(d: Defect) -> &'static str {
     match d {
         Defect::NoSuchRoot => "an end names a root that its equation does not have",
         Defect::NoDenominator => "the denominator is zero",
     }
 }
 
-fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static str> {
+pub(super) fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static str> {
     let c = k.curve(&arc.p, &arc.q).map_err(why)?;
     let l = k.root(&arc.left.c, arc.left.k).map_err(why)?;
     let r = k.root(&arc.right.c, arc.right.k).map_err(why)?;
@@ -199,7 +199,7 @@ fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static
     })
 }
 
-fn upright(k: &mut Kernel, arc: &Upright, index: usize) -> Result<Item, &'static str> {
+pub(super) fn upright(k: &mut Kernel, arc: &Upright, index: usize) -> Result<Item, &'static str> {
     let x = k.root(&arc.u.c, arc.u.k).map_err(why)?;
     let low = k.curve(&arc.low[0], &arc.low[1]).map_err(why)?;
     let high = k.curve(&arc.high[0], &arc.high[1]).map_err(why)?;

@@ -155,6 +155,16 @@ impl Tracer<'_> {
         self.links.push(Link { item, place, next });
     }
 
+    /// Calls `found` with every item through a visited vertex.
+    pub(super) fn each_link(&self, v: u32, mut found: impl FnMut(u32)) {
+        let mut at = self.vertices[v as usize].links;
+        while at != NONE {
+            let link = &self.links[at as usize];
+            found(link.item);
+            at = link.next;
+        }
+    }
+
     /// Lexicographic order of two points.
     pub(super) fn cmp_points(&mut self, p: Point, q: Point) -> Ordering {
         match self.k.cmp(p.x, q.x) {

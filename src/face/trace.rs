@@ -116,6 +116,8 @@ pub(crate) struct Tracer<'a> {
     pub(super) numbers: Vec<NumId>,
     pub(super) edges: Vec<Edge>,
     pub(super) cycles: Vec<Cycle>,
+    /// The half-edges in the order walked: twice the edge, one more if against its direction.
+    pub(super) order: Vec<u32>,
     /// Components whose boundary was traced.
     pub(super) touched: Vec<bool>,
     pub(super) unbounded: bool,
@@ -156,6 +158,7 @@ impl<'a> Tracer<'a> {
             numbers: Vec::new(),
             edges: Vec::new(),
             cycles: Vec::new(),
+            order: Vec::new(),
             touched: vec![false; comps.len()],
             unbounded: false,
         };
@@ -322,6 +325,7 @@ impl<'a> Tracer<'a> {
             debug_assert!(!*side, "a side of an edge was walked twice");
             *side = true;
             count += 1;
+            self.order.push(2 * edge + u32::from(!dir.forward()));
             let (from, to) = self.germs_of(w);
             let turn = if back == from { to - 1 } else { back - 1 };
             self.germs[turn].open = true;
@@ -364,6 +368,30 @@ impl<'a> Tracer<'a> {
         let v = self.find(self.stops[leaf.from]);
         let (_, to) = self.germs_of(v);
         self.trace(v, to - 1);
+    }
+
+    /// Traces the cycle along one side of a vertical that nothing meets between its ends, unless that
+    /// side was traced before: going up with the face on the left, or down.
+    pub(super) fn border(&mut self, item: u32, up: bool) {
+        let leaf = self.leaf_at_end(item, false);
+        let low = self.find(self.stops[leaf.from]);
+        self.germs_of(low);
+        let g = self.germ_along(low, item, Dir::Up);
+        let known = self.germs[g].edge;
+        if known != NONE {
+            let e = &self.edges[known as usize];
+            if if up { e.above } else { e.below } {
+                return;
+            }
+        }
+        if up {
+            self.trace(low, g);
+            return;
+        }
+        let high = self.next_stop(item, low, true);
+        self.germs_of(high);
+        let g = self.germ_along(high, item, Dir::Down);
+        self.trace(high, g);
     }
 
     /// The point where a component begins.
