@@ -110,7 +110,10 @@ pub(crate) struct Tracer<'a> {
     pub(super) serial: u32,
     pub(super) mark: Vec<u32>,
     pub(super) mark_serial: u32,
+    /// The vertices of many arcs that an item passes through.
+    pub(super) busy: FastMap<u32, Vec<u32>>,
     /// Buffers.
+    pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
@@ -151,6 +154,8 @@ impl<'a> Tracer<'a> {
             serial: 0,
             mark: vec![0; items.len()],
             mark_serial: 0,
+            busy: FastMap::default(),
+            through: Vec::new(),
             hits: Vec::new(),
             near: Vec::new(),
             numbers: Vec::new(),
@@ -242,6 +247,9 @@ impl<'a> Tracer<'a> {
         let vertex = &mut self.vertices[v as usize];
         vertex.germs = from as u32;
         vertex.germ_count = (to - from) as u32;
+        if many {
+            self.remember(v);
+        }
         (from, to)
     }
 
