@@ -215,7 +215,8 @@ impl Kernel {
                 return true;
             }
             // Perhaps a root of higher order.
-            let (Some(m), Some(h)) = (self.equation(x), rest.or_else(|| self.diff_small(c, d))) else {
+            let (Some(m), Some(h)) = (self.equation(x), rest.or_else(|| self.diff_small(c, d)))
+            else {
                 return false;
             };
             let Some(h) = derivative_of(&h) else {

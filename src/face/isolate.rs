@@ -87,7 +87,11 @@ fn bernstein(g: &[Approx], a: f64, b: f64) -> [Approx; 5] {
     let mut power = w;
     for j in 1..=n {
         let v = SHARE[n][j];
-        let e = if n > 2 && j < n { v * f64::EPSILON } else { 0.0 };
+        let e = if n > 2 && j < n {
+            v * f64::EPSILON
+        } else {
+            0.0
+        };
         c[j] = c[j] * power * Approx { v, e };
         power = power * w;
     }

@@ -264,12 +264,13 @@ impl Tracer<'_> {
                 at = link.next;
             }
         }
-        let mut few = true;
+        let (mut few, mut tests) = (true, 0);
         self.tree.query(hull, |b| {
             if stamp[b as usize] == serial {
                 return true;
             }
             stamp[b as usize] = serial;
+            tests += 1;
             let other = &items[b as usize];
             // Edges of one colour meet at common vertices only.
             if me.color != 0 && other.color == me.color {
@@ -295,6 +296,7 @@ impl Tracer<'_> {
             few = near.len() <= most;
             few
         });
+        self.tests += tests;
         few
     }
 

@@ -112,6 +112,9 @@ pub(crate) struct Tracer<'a> {
     pub(super) mark_serial: u32,
     /// The vertices of many arcs that an item passes through.
     pub(super) busy: FastMap<u32, Vec<u32>>,
+    /// Pairs tested for a meeting, and how many may be before the walk is given up.
+    pub(super) tests: u64,
+    pub(super) budget: u64,
     /// Buffers.
     pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
@@ -155,6 +158,8 @@ impl<'a> Tracer<'a> {
             mark: vec![0; items.len()],
             mark_serial: 0,
             busy: FastMap::default(),
+            tests: 0,
+            budget: u64::MAX,
             through: Vec::new(),
             hits: Vec::new(),
             near: Vec::new(),
@@ -284,6 +289,9 @@ impl<'a> Tracer<'a> {
         let (mut v, mut g) = (v0, g0);
         let (mut leftmost, mut hole, mut count) = (NONE, false, 0);
         loop {
+            if self.tests > self.budget {
+                return;
+            }
             let Germ {
                 item,
                 dir,
@@ -398,6 +406,9 @@ impl<'a> Tracer<'a> {
                 .germ_below(item, from.x, true)
                 .expect("every germ is made when asked for");
             self.trace(v, g);
+            if self.tests > self.budget {
+                return Ok(());
+            }
             let cycle = self.cycles[self.cycles.len() - 1];
             if !cycle.hole {
                 return Ok(());
@@ -602,6 +613,14 @@ fn index(k: &Kernel, items: &mut [Item]) -> Tree {
         }
     }
     Tree::new(entries)
+}
+
+/// A hull of a whole item.
+pub(crate) fn hull_of(k: &Kernel, item: &Item) -> Hull {
+    match item.carrier {
+        Carrier::Graph(c) => k.hull(c, k.enclosure(item.l).0, k.enclosure(item.r).1),
+        Carrier::Vertical(..) => Hull::boxed(box_of(k, item)),
+    }
 }
 
 fn box_of(k: &Kernel, item: &Item) -> Bounds {
