@@ -1,17 +1,16 @@
-//! The results of `classify` and `forces` as the contract writes them.
+//! The result of `classify` as the contract writes it.
 
+use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
 use super::escape::Ground;
-use super::peak::{Instant, Peak, Peaked, force, higher, torque};
-use super::stretch::stretches;
 use super::total::{Total, total};
 use crate::contact::{Contact, ContactKind};
 use crate::geometry::Vec2;
-use crate::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use crate::motion::{OutcomeKind, PlanError, Trajectory};
 use crate::number::Rat;
 use crate::report::Num;
 use crate::report::json::ContactDocument;
-use crate::scene::{Motion, Scene};
+use crate::scene::Scene;
 use crate::slice::Time;
 use serde::Serialize;
 
@@ -95,41 +94,6 @@ pub struct ArcDocument {
     pub verdict: &'static str,
 }
 
-/// A supremum.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum Bound {
-    /// Past every bound.
-    Unbounded(Unbounded),
-    /// Between two exact rationals.
-    Within {
-        /// At least this.
-        lo: String,
-        /// At most this.
-        hi: String,
-    },
-}
-
-/// The word for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Unbounded {
-    /// Past every bound.
-    #[serde(rename = "unbounded")]
-    Unbounded,
-}
-
-impl Bound {
-    fn of(p: &Peak) -> Bound {
-        match p {
-            Peak::Unbounded => Bound::Unbounded(Unbounded::Unbounded),
-            Peak::Within(lo, hi) => Bound::Within {
-                lo: lo.to_string(),
-                hi: hi.to_string(),
-            },
-        }
-    }
-}
-
 fn pair(v: &Vec2) -> [Num; 2] {
     [Num::of_rat(&v.x), Num::of_rat(&v.y)]
 }
@@ -138,7 +102,7 @@ fn instant(t: &Time) -> Num {
     t.as_rat().map_or_else(|| Num::of(t.exact()), Num::of_rat)
 }
 
-fn contact(scene: &Scene, contact: &Contact) -> ContactDocument {
+pub(super) fn contact(scene: &Scene, contact: &Contact) -> ContactDocument {
     match *contact {
         Contact::Limit(limit) => ContactDocument::Limit { limit },
         Contact::Obstacle {
@@ -306,7 +270,7 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
         outcome: stop(scene, &d.run),
         friction_modelled: d.with_friction,
         critical_friction: d.critical.as_ref().map(|c| Num::of(&c.0)),
-        peak_force: d.peak.as_ref().map(|p| Bound::of(&p.0.peak)),
+        peak_force: d.peak.as_ref().map(|p| Bound::of(&p.0.peak, 12)),
         plan,
     }
 }
@@ -349,229 +313,4 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
         }
     }
     text
-}
-
-/// The result of `forces`.
-#[derive(Debug, Serialize)]
-pub struct ForcesDocument {
-    /// `snapfit.forces/1`.
-    pub schema: &'static str,
-    /// Name of the scene.
-    pub scene: String,
-    /// How the motion ended.
-    pub outcome: &'static str,
-    /// Over the whole motion and all pawls; null where no pawl has a stiffness.
-    pub peak: Option<PeakDocument>,
-    /// The same a pawl.
-    pub pawls: Vec<PawlForces>,
-}
-
-/// A peak of force and one of torque.
-#[derive(Clone, Debug, Serialize)]
-pub struct PeakDocument {
-    /// The contact force.
-    pub force: Bound,
-    /// The torque at the hinge.
-    pub torque: Bound,
-    /// When the force peaks: at an instant, or between two.
-    pub time: When,
-    /// Whose force it is.
-    pub pawl: String,
-}
-
-/// An instant, or an interval of them.
-#[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub enum When {
-    /// At an instant.
-    At(Num),
-    /// Between two rational instants.
-    Between {
-        /// Not before.
-        lo: String,
-        /// Not after.
-        hi: String,
-    },
-}
-
-/// Forces of one pawl.
-#[derive(Debug, Serialize)]
-pub struct PawlForces {
-    /// Its name.
-    pub name: String,
-    /// Over its whole motion; null without a stiffness.
-    pub peak: Option<PeakDocument>,
-    /// A sliding segment each, in order of time.
-    pub segments: Vec<SegmentForces>,
-}
-
-/// Forces along one sliding segment.
-#[derive(Debug, Serialize)]
-pub struct SegmentForces {
-    /// When it begins.
-    pub from: Num,
-    /// When it ends.
-    pub to: Num,
-    /// The contact.
-    pub contact: ContactDocument,
-    /// The contact force.
-    pub force: Bound,
-    /// The torque at the hinge.
-    pub torque: Bound,
-    /// When the force peaks.
-    pub time: When,
-}
-
-/// Simulates a scene and encloses its forces, each within a relative 10^-`digits`.
-///
-/// # Errors
-/// [`PlanError`] where the plan asks for what cannot be.
-pub fn forces(scene: &Scene, digits: u32, ask: &Ask) -> Result<ForcesDocument, PlanError> {
-    let options = Options {
-        deadline: ask.deadline,
-        progress: None,
-    };
-    let run = simulate(scene, &options)?;
-    let ground = Ground::new(scene, ask.deadline);
-    let slid = stretches(scene, &ground.shapes, &ground.obstacles, &run);
-    let goal = (digits.saturating_mul(10)).div_ceil(3) + 2;
-    let zero = Rat::zero();
-    let mu = scene.friction.as_ref().unwrap_or(&zero);
-    let clock = |phase: usize, t: &Time| match t.as_rat() {
-        Some(t) => Num::of_rat(&(&run.phases[phase].from + t)),
-        None => Num::of(&t.affine(&run.phases[phase].from, &Rat::one())),
-    };
-    let when = |phase: usize, i: &Instant| match i {
-        Instant::At(t) => When::At(clock(phase, t)),
-        Instant::Between(a, b) => {
-            let from = &run.phases[phase].from;
-            When::Between {
-                lo: (from + a).to_string(),
-                hi: (from + b).to_string(),
-            }
-        }
-    };
-    let ended = |i: usize| {
-        matches!(run.outcome.kind, OutcomeKind::Jammed | OutcomeKind::Stuck)
-            && run.outcome.pawl == Some(i)
-    };
-    let mut pawls = Vec::new();
-    let mut overall: Option<(PeakDocument, Peak, Peak)> = None;
-    for (i, pawl) in run.pawls.iter().enumerate() {
-        let mut out = PawlForces {
-            name: pawl.name.clone(),
-            peak: None,
-            segments: Vec::new(),
-        };
-        let Some(k) = &scene.pawls[i].stiffness else {
-            pawls.push(out);
-            continue;
-        };
-        let mut best: Option<(Peaked, usize)> = None;
-        let mut turned = Peak::zero();
-        for (j, segment) in pawl.segments.iter().enumerate() {
-            let Some(sliding) = &segment.sliding else {
-                continue;
-            };
-            let (mut push, mut twist) = (None, Peak::zero());
-            for s in slid.iter().filter(|s| s.pawl == i && s.segment == j) {
-                push = Some(higher(push, force(s, k, mu, goal)));
-                twist = twist.max(torque(s, k, goal).peak);
-            }
-            let Some(mut push) = push else {
-                continue;
-            };
-            // The motion ends held: the force grows past every bound.
-            if ended(i) && segment.phase == run.outcome.phase && segment.to == run.outcome.time {
-                push = Peaked {
-                    peak: Peak::Unbounded,
-                    when: Instant::At(segment.to.clone()),
-                };
-            }
-            out.segments.push(SegmentForces {
-                from: clock(segment.phase, &segment.from),
-                to: clock(segment.phase, &segment.to),
-                contact: contact(scene, &sliding.contact),
-                force: Bound::of(&push.peak),
-                torque: Bound::of(&twist),
-                time: when(segment.phase, &push.when),
-            });
-            turned = turned.max(twist);
-            best = Some(match best {
-                None => (push, segment.phase),
-                Some((b, phase)) => {
-                    let first = exceeds(&b.peak, &push.peak);
-                    (
-                        higher(Some(b), push),
-                        if first { phase } else { segment.phase },
-                    )
-                }
-            });
-        }
-        if ended(i) && best.as_ref().is_none_or(|b| b.0.peak != Peak::Unbounded) {
-            let held = Peaked {
-                peak: Peak::Unbounded,
-                when: Instant::At(run.outcome.time.clone()),
-            };
-            best = Some((held, run.outcome.phase));
-        }
-        let (push, phase) = best.unwrap_or((
-            Peaked {
-                peak: Peak::zero(),
-                when: Instant::At(Time::from(Rat::zero())),
-            },
-            0,
-        ));
-        let peak = PeakDocument {
-            force: Bound::of(&push.peak),
-            torque: Bound::of(&turned),
-            time: when(phase, &push.when),
-            pawl: pawl.name.clone(),
-        };
-        out.peak = Some(peak.clone());
-        pawls.push(out);
-        overall = Some(match overall {
-            None => (peak, push.peak, turned),
-            Some((old, force, torque)) => {
-                let first = exceeds(&force, &push.peak);
-                (
-                    if first { old } else { peak },
-                    force.max(push.peak),
-                    torque.max(turned),
-                )
-            }
-        });
-    }
-    let peak = overall.map(|(p, force, torque)| PeakDocument {
-        force: Bound::of(&force),
-        torque: Bound::of(&torque),
-        ..p
-    });
-    Ok(ForcesDocument {
-        schema: "snapfit.forces/1",
-        scene: scene.name.clone(),
-        outcome: run.outcome.kind.name(),
-        peak,
-        pawls,
-    })
-}
-
-/// Whether `higher` keeps the instant of the first of two peaks.
-fn exceeds(a: &Peak, b: &Peak) -> bool {
-    match (a, b) {
-        (Peak::Unbounded, _) => true,
-        (_, Peak::Unbounded) => false,
-        (Peak::Within(x, _), Peak::Within(y, _)) => x >= y,
-    }
-}
-
-/// The scene with a way out appended to its plan, which can be simulated.
-pub fn with_motion(scene: &Scene, velocity: &Vec2, duration: &Rat) -> Scene {
-    let mut longer = scene.clone();
-    longer.motions.push(Motion::Translate {
-        velocity: velocity.clone(),
-        duration: Some(duration.clone()),
-        until_root_collision: false,
-    });
-    longer
 }

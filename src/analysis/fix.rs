@@ -195,6 +195,23 @@ impl Fix {
             bits: self.bits,
         }
     }
+    /// What lies in both: two enclosures of one value.
+    pub fn meet(&self, o: &Fix) -> Fix {
+        let lo = self.lo.clone().max(o.lo.clone());
+        let hi = self.hi.clone().min(o.hi.clone());
+        if lo > hi {
+            return self.join(o);
+        }
+        Fix {
+            lo,
+            hi,
+            bits: self.bits,
+        }
+    }
+    /// The part of it within an interval that is known to hold the value.
+    pub fn clamp(&self, within: &Fix) -> Fix {
+        self.meet(within)
+    }
     /// The arctangent. Monotone, so each end is enclosed by itself.
     pub fn atan(&self) -> Fix {
         let end = |v: &Int| {

@@ -28,6 +28,7 @@
 //! A stretch is the part of a segment that lies in one chart, where all of this is a quotient of
 //! polynomials in the chart position x, and x is monotone.
 
+use super::fix::{Bits, Fix};
 use super::qpoly::QPoly;
 use crate::contact::{Chart, Contact, ContactKind, ObstacleShape, PawlShape, Trig};
 use crate::geometry::Vec2;
@@ -56,6 +57,91 @@ pub struct Stretch {
     /// Sign of θ.
     pub side: i32,
     pub(super) law: Law,
+    /// Who touches whom; None on an angular stop.
+    pub(super) touch: Option<Touch>,
+    /// The root's velocity.
+    pub(super) velocity: Vec2,
+    p: [Int; 3],
+    q: [Int; 3],
+    branch: i32,
+}
+
+/// The geometry of a contact.
+#[derive(Clone, Debug)]
+pub(super) enum Touch {
+    /// The pawl's vertex a, from its hinge, on an edge with outward normal n.
+    B { a: Vec2, n: Vec2 },
+    /// The pawl's edge with outward normal m on a vertex at w from the hinge at the phase's start.
+    A { m: Vec2, w: Vec2 },
+}
+
+impl Stretch {
+    /// Whether θ stands still.
+    pub(super) fn still(&self) -> bool {
+        self.x[0] == self.x[1]
+    }
+    pub(super) fn curve(&self) -> Curve<'_> {
+        Curve {
+            p: &self.p,
+            q: &self.q,
+            branch: self.branch,
+        }
+    }
+    /// t = −p/q in the chart; None on an angular stop.
+    pub(super) fn clock(&self) -> Option<&(QPoly, QPoly)> {
+        match &self.law {
+            Law::Graph { clock, .. } => Some(clock),
+            _ => None,
+        }
+    }
+    /// Where d vanishes inside, in order of time: the variable (x, or t where θ stands still) and
+    /// the instant.
+    pub(super) fn reversals(&self) -> Vec<(Algebraic, Time)> {
+        let (lo, hi) = if self.x[0] <= self.x[1] {
+            (&self.x[0], &self.x[1])
+        } else {
+            (&self.x[1], &self.x[0])
+        };
+        match &self.law {
+            Law::Graph { drag, clock, .. } if lo != hi && !drag.poly().is_zero() => {
+                let roots = drag.poly().real_roots_in(&Rat::from(-1), &Rat::one());
+                let (p, q) = QPoly::pair(&clock.0.scale(&Rat::from(-1)), &clock.1);
+                let mut at: Vec<_> = roots
+                    .into_iter()
+                    .filter(|x| lo < x && x < hi)
+                    .map(|x| {
+                        let t = Time::ratio(&x, p.clone(), q.clone());
+                        (x, t)
+                    })
+                    .collect();
+                if self.x[0] > self.x[1] {
+                    at.reverse();
+                }
+                at
+            }
+            Law::Level { drag, .. } => {
+                let roots = drag.poly().real_roots().into_iter();
+                let (begin, end) = (self.t[0].exact(), self.t[1].exact());
+                let inside = roots.filter(|t| begin < t && t < end);
+                inside.map(|t| (t.clone(), Time::at(t))).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+    /// The sign of d between two places (x, or t where θ stands still).
+    pub(super) fn drag_between(&self, a: &Algebraic, b: &Algebraic) -> i32 {
+        let within = |a: &Algebraic, b: &Algebraic| match a.cmp(b) {
+            std::cmp::Ordering::Less => Algebraic::between(a, b),
+            std::cmp::Ordering::Greater => Algebraic::between(b, a),
+            std::cmp::Ordering::Equal => a.enclosure(64).0,
+        };
+        match &self.law {
+            Law::Graph { drag, .. } if self.still() => self.x[0].sign_of(&drag.poly()),
+            Law::Graph { drag, .. } => drag.eval(&within(a, b)).sign(),
+            Law::Level { drag, .. } => drag.eval(&within(a, b)).sign(),
+            Law::Stop => 0,
+        }
+    }
 }
 
 /// |F_θ|, ρ_y and d along a stretch.
@@ -125,6 +211,11 @@ pub fn stretches(
                 t: [segment.from.clone(), segment.to.clone()],
                 side: 0,
                 law: Law::Stop,
+                touch: world.touch(),
+                velocity: phase.velocity.clone(),
+                p: sliding.p.clone(),
+                q: sliding.q.clone(),
+                branch: sliding.branch,
             };
             world.split(&from, &to, &place, &mut out);
         }
@@ -147,7 +238,7 @@ fn known(pawl: &PawlTrace, segment: &Segment, late: bool) -> Option<Angle> {
     }
 }
 
-struct Curve<'a> {
+pub(super) struct Curve<'a> {
     p: &'a [Int; 3],
     q: &'a [Int; 3],
     branch: i32,
@@ -184,33 +275,68 @@ impl Curve<'_> {
         if let Some(r) = rational {
             return self.at(&r, winding).unwrap_or_else(Angle::rest);
         }
+        // At constant θ any instant tells it: its place is a root of P and of Q.
+        let mid = Time::between(&segment.from, &segment.to);
+        if let Some(a) = self.at(&mid, winding) {
+            let parts = [self.p, self.q].map(|c| Self::in_chart(c, a.chart()));
+            let later = Time::between(&Time::from(mid.clone()), &segment.to);
+            if parts.iter().all(|p| a.x.sign_of(p) == 0)
+                && self.at(&later, winding).is_some_and(|b| b == a)
+            {
+                return a;
+            }
+        }
+        // Else x = ±1 would make the instant rational, so refining settles the chart.
         let exact = t.exact();
-        let at = |r: &Rat| {
-            // Only instants within the segment lie on its branch.
-            let r = if segment.from.cmp_rat(r).is_gt() || segment.to.cmp_rat(r).is_lt() {
-                Time::between(&segment.from, &segment.to)
-            } else {
-                r.clone()
-            };
-            self.at(&r, winding).unwrap_or_else(Angle::rest)
+        let place = |chart: Chart, bits: u32| {
+            let (lo, hi) = exact.enclosure(bits);
+            let b = Bits(u64::from(bits) + 16);
+            self.enclosed(chart, &b.hull(&lo, &hi), b)
         };
         let mut bits = 32;
         loop {
-            let (lo, hi) = exact.enclosure(bits);
-            let (a, b) = (at(&lo), at(&hi));
-            bits *= 2;
-            if a.chart() != b.chart() && bits < 4096 {
-                continue;
+            for chart in Chart::BOTH {
+                let Some(x) = place(chart, bits) else {
+                    continue;
+                };
+                if (bits < 1 << 14 || chart == Chart::Back)
+                    && (x.lo() <= Rat::from(-1) || x.hi() >= Rat::one())
+                {
+                    continue;
+                }
+                let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
+                let x = exact.root_over(&p, &q, &mut |bits| {
+                    let mut more = bits;
+                    loop {
+                        if let Some(x) = place(chart, more) {
+                            return (x.lo(), x.hi());
+                        }
+                        more *= 2;
+                    }
+                });
+                return angle_of(chart, x, winding);
             }
-            let chart = a.chart();
-            let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
-            let x = exact.root_over(&p, &q, &mut |bits| {
-                let (lo, hi) = exact.enclosure(bits);
-                let (a, b) = (at(&lo).x, at(&hi).x);
-                let (a, b) = if a <= b { (a, b) } else { (b, a) };
-                (a.enclosure(bits).0, b.enclosure(bits).1)
-            });
-            return angle_of(chart, x, winding);
+            bits *= 2;
+        }
+    }
+    /// The place in a chart at an enclosed instant of the segment; None where more bits are
+    /// needed.
+    pub(super) fn enclosed(&self, chart: Chart, t: &Fix, b: Bits) -> Option<Fix> {
+        let (p, q) = (Self::in_chart(self.p, chart), Self::in_chart(self.q, chart));
+        let [c, half, a] = [0, 1, 2].map(|k| {
+            let at = |f: &Poly| b.rat(&Rat::from(f.coeff(k)));
+            at(&p).add(&t.mul(&at(&q)))
+        });
+        let four = b.int(4);
+        let root = half.mul(&half).sub(&four.mul(&a).mul(&c)).sqrt()?;
+        let root = root.mul(&b.int(i64::from(self.branch)));
+        let two = b.int(2);
+        // Two forms of one root: each is poor where the other is good.
+        let near = root.sub(&half).div(&a.mul(&two));
+        let far = c.mul(&two).div(&half.add(&root).neg());
+        match (near, far) {
+            (Some(x), Some(y)) => Some(x.meet(&y)),
+            (x, y) => x.or(y),
         }
     }
 }
@@ -279,6 +405,31 @@ impl World<'_> {
             x = edge(-step);
             t = until;
         }
+    }
+
+    fn touch(&self) -> Option<Touch> {
+        let Contact::Obstacle {
+            obstacle,
+            kind,
+            ring,
+            obstacle_feature,
+            pawl_feature,
+        } = self.contact
+        else {
+            return None;
+        };
+        let oring = &self.obstacles[obstacle as usize].rings[ring as usize];
+        let (i, j) = (pawl_feature as usize, obstacle_feature as usize);
+        Some(match kind {
+            ContactKind::B => Touch::B {
+                a: self.shape.ring.vertices[i].clone(),
+                n: oring.normals[j].clone(),
+            },
+            ContactKind::A => Touch::A {
+                m: self.shape.ring.normals[i].clone(),
+                w: &oring.vertices[j] - &self.p0,
+            },
+        })
     }
 
     /// P and Q without their common factor, their quotient unchanged.
