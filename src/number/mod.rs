@@ -11,6 +11,7 @@ mod int;
 mod interval;
 mod isolate;
 pub mod literal;
+mod long;
 mod modular;
 mod poly;
 mod rat;
