@@ -25,4 +25,4 @@ pub use int::Int;
 pub use interval::Interval;
 pub use poly::Poly;
 pub use rat::Rat;
-pub use scalar::Scalar;
+pub use scalar::{Enclosed, Scalar};
