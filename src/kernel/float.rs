@@ -134,6 +134,7 @@ fn to_rat(x: f64) -> Rat {
 }
 
 impl Scalar for Double {
+    const EXACT: bool = false;
     fn from_rat(r: &Rat) -> Double {
         Double(r.nearest_f64().unwrap_or(if r.sign() < 0 {
             f64::NEG_INFINITY

@@ -2,7 +2,8 @@
 
 use super::{Arc, ArcId, Curve, CurveId, End, Point, Shape, Side};
 use crate::contact::{
-    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig,
+    patches_within,
 };
 use crate::geometry::Vec2;
 use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
@@ -38,7 +39,7 @@ impl<K: Kernel> Slice<K> {
         obstacles: &[ObstacleShape<K::Num>],
         limits: Option<&(K::Num, K::Num)>,
     ) -> Slice<K> {
-        let patches = patches(&frame, pawl, obstacles);
+        let patches = patches_within(&frame, pawl, obstacles);
         let mut b = Builder::<K>::new(frame, pawl, obstacles);
         for (i, patch) in patches.iter().enumerate() {
             b.add(patch, i as u32);
@@ -364,6 +365,9 @@ impl<'a, K: Kernel> Builder<'a, K> {
             return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
         };
         for chart in Chart::BOTH {
+            if !patch.charts[chart.index()] {
+                continue;
+            }
             let c = &self.curves[curve as usize];
             let (p, q) = (in_chart::<K>(&c.p, chart), in_chart::<K>(&c.q, chart));
             let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
