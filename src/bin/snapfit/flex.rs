@@ -28,6 +28,9 @@ pub(crate) struct FlexArgs {
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
+    /// Write every linear program into a directory, as step0.mps and so on
+    #[arg(long, value_name = "DIR")]
+    programs: Option<PathBuf>,
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
@@ -127,7 +130,17 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         Accuracy::Bounds => (lp::Accuracy::Bounds, "bounds"),
         Accuracy::Exact => (lp::Accuracy::Exact, "exact"),
     };
+    let count = std::cell::Cell::new(0u32);
+    let write = |model: &lp::Model| {
+        if let Some(dir) = &args.programs {
+            let path = dir.join(format!("step{}.mps", count.replace(count.get() + 1)));
+            if let Err(e) = output::write(Some(&path), &flex::to_mps(model)) {
+                let _ = writeln!(std::io::stderr(), "snapfit: {e}");
+            }
+        }
+    };
     let options = FlexOptions {
+        programs: Some(&write),
         accuracy,
         method: lp::Method::Warm,
         corners: match args.corners {

@@ -75,7 +75,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         }
         Verb::Flex(args) => flex::run_flex(args),
         Verb::Generate(args) => flex::run_generate(args),
-        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Schema(args) => {
             let schema = match args.name {
