@@ -117,6 +117,12 @@ pub(crate) struct Render {
     /// Draw as SVG, to PATH or to standard output
     #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "-")]
     pub(crate) svg: Option<PathBuf>,
+    /// Of a structure: so many pictures of its way, PATH with a number before its ending
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: Option<u32>,
+    /// Of a structure: how much is proven of every linear program
+    #[arg(long, value_enum, default_value = "exact")]
+    pub(crate) accuracy: crate::flex::Accuracy,
 }
 
 #[derive(Args)]

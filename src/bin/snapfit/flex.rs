@@ -53,13 +53,23 @@ pub(crate) struct GenerateArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Accuracy {
+pub(crate) enum Accuracy {
     /// Nothing is proven
     Float,
     /// A rational enclosure of every optimum
     Bounds,
     /// Every optimum itself
     Exact,
+}
+
+impl Accuracy {
+    pub(crate) fn level(self) -> lp::Accuracy {
+        match self {
+            Accuracy::Float => lp::Accuracy::Float,
+            Accuracy::Bounds => lp::Accuracy::Bounds,
+            Accuracy::Exact => lp::Accuracy::Exact,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -78,7 +88,7 @@ enum PathArg {
     Safe,
 }
 
-fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
+pub(crate) fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
     let overrides = crate::overrides(common)?;
     let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
     if !common.quiet {

@@ -6,6 +6,8 @@
 
 mod args;
 mod flex;
+mod flex_apps;
+mod flex_render;
 mod output;
 mod progress;
 mod trade;
@@ -197,7 +199,11 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
     };
     output::spare_input(&args.common.file, to)?;
-    let file = read(&args.common)?;
+    let (name, bytes) = read_bytes(&args.common)?;
+    if snapfit::flex::is_structure(&name, &bytes) {
+        return flex_render::run_render(args, &name, &bytes, to);
+    }
+    let file = parse(&args.common, &name, &bytes)?;
     let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
     output::write(to, &picture::svg(file.scene(), &document))?;
     Ok(status(&trajectory))
