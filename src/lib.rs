@@ -12,12 +12,14 @@
 //! * [`number`]: integers and rationals behind one seam, certified intervals, real algebraic
 //!   numbers. No float decides anything; a float may settle a sign that its error bound proves.
 //! * [`geometry`]: points, rational rotations, polygons, exact predicates.
+//! * [`kernel`]: which arithmetic answers; everything from `contact` to `motion` is written over it.
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
 //! * [`report`]: results as JSON with every number exact, summaries, pictures.
 //! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
+//! * [`trade`](mod@trade): speed against accuracy, measured over the arithmetics.
 //! * [`face`](mod@face): the single face of an arrangement of arcs.
 //! * [`lp`], [`certificate`]: exact linear programming, and the checker of its certificates, which
 //!   shares only the reader and the numbers with it.
@@ -52,10 +54,13 @@ pub mod analysis;
 pub mod certificate;
 pub mod contact;
 pub mod face;
+pub mod flex;
 pub mod geometry;
+pub mod kernel;
 pub mod lp;
 pub mod motion;
 pub mod number;
 pub mod report;
 pub mod scene;
 pub mod slice;
+pub mod trade;

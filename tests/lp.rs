@@ -5,7 +5,8 @@
 
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{
-    Certificate, Method, Model, Options, Outcome, Range, Status, Vector, read_model, report, solve,
+    Certificate, Method, Model, Options, Outcome, Place, Range, Status, Vector, read_model, report,
+    solve,
 };
 use snapfit::number::{Int, Rat};
 
@@ -190,6 +191,44 @@ fn random_programs_agree_with_elimination() {
         }] += 1;
     }
     assert!(runs(1e5) < 500 || seen.iter().all(|&s| s > 50), "{seen:?}");
+}
+
+/// Any start ends in the same optimum: a good one without a pivot, and lists that fit nothing.
+#[test]
+fn starts_from_any_basis() {
+    let mut r = Random(0x1357_9bdf_0246_8ace);
+    let mut without_pivots = 0;
+    for _ in 0..runs(1e4) {
+        let model = random_model(&mut r);
+        let cold = solved(&model, Method::Exact);
+        let last = cold.basis.clone().expect("a basis");
+        let mut other = last.clone();
+        let places = [Place::Basic, Place::Lower, Place::Upper, Place::Zero];
+        for place in other.columns.iter_mut().chain(&mut other.rows) {
+            *place = places[r.below(4) as usize];
+        }
+        other.rows.truncate(r.below(6) as usize);
+        other.columns.resize(r.below(6) as usize, Place::Basic);
+        for method in [Method::Exact, Method::Warm] {
+            for basis in [last.clone(), other.clone()] {
+                let options = Options {
+                    method,
+                    basis: Some(basis),
+                    ..Options::default()
+                };
+                let out = solve(&model, &options);
+                assert_eq!(out.status, cold.status);
+                assert_eq!(out.objective, cold.objective);
+                let claim = Claim::of(&out).expect("a certificate");
+                assert_eq!(verify(&model, &claim), Ok(()), "{model:?} {out:?}");
+                if options.basis.as_ref() == Some(&last) && method == Method::Exact {
+                    assert!(out.status != Status::Optimal || out.exact_pivots == 0);
+                    without_pivots += u64::from(cold.exact_pivots > 0);
+                }
+            }
+        }
+    }
+    assert!(runs(1e4) < 50 || without_pivots > 10);
 }
 
 /// Changes something in a vector.

@@ -121,7 +121,7 @@ pub fn family(scene: &Scene, plan: &Trajectory) -> Option<(Vec<Vec2>, Rat)> {
 pub fn relative(scene: &Scene, ask: &Ask) -> Result<Relative, PlanError> {
     let options = Options {
         deadline: ask.deadline,
-        progress: None,
+        ..Options::default()
     };
     let forward = simulate(scene, &options)?;
     let ground = Ground::new(scene, ask.deadline);

@@ -188,6 +188,7 @@ impl<'a> Ground<'a> {
                 branches,
             },
             pawls,
+            ledger: Default::default(),
         }
     }
 }

@@ -266,7 +266,7 @@ impl Default for Wish {
 pub fn forces(scene: &Scene, wish: &Wish, ask: &Ask) -> Result<ForcesDocument, PlanError> {
     let options = Options {
         deadline: ask.deadline,
-        progress: None,
+        ..Options::default()
     };
     let run = simulate(scene, &options)?;
     let modelled = scene.pawls.iter().any(|p| p.stiffness.is_some());

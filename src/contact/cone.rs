@@ -2,21 +2,21 @@
 
 use super::Ring;
 use crate::geometry::Vec2;
-use crate::number::Rat;
+use crate::number::{Rat, Scalar};
 
 /// The solid near a boundary point, as a union of convex cones, each given by its generators: a
 /// half-plane (τ, −τ, inward) inside an edge, a wedge at a convex vertex, two half-planes at a
 /// reflex one.
 #[derive(Clone, Debug)]
-pub struct Cones(Vec<Vec<Vec2>>);
+pub struct Cones<R = Rat>(Vec<Vec<Vec2<R>>>);
 
-impl Cones {
+impl<R: Scalar> Cones<R> {
     /// The solid of a ring beside a point inside edge k.
-    pub fn at_edge(ring: &Ring, k: usize) -> Cones {
+    pub fn at_edge(ring: &Ring<R>, k: usize) -> Cones<R> {
         Cones(vec![half_plane(ring, k)])
     }
     /// The solid of a ring beside vertex i.
-    pub fn at_vertex(ring: &Ring, i: usize) -> Cones {
+    pub fn at_vertex(ring: &Ring<R>, i: usize) -> Cones<R> {
         if ring.convex[i] {
             let at = &ring.vertices[i];
             let ahead = &ring.vertices[ring.next(i)] - at;
@@ -26,11 +26,11 @@ impl Cones {
         Cones(vec![half_plane(ring, ring.prev(i)), half_plane(ring, i)])
     }
     /// Every generator once.
-    pub fn generators(&self) -> impl Iterator<Item = &Vec2> {
+    pub fn generators(&self) -> impl Iterator<Item = &Vec2<R>> {
         self.0.iter().flatten()
     }
     /// All generators mapped, by a rotation say.
-    pub fn map(&self, f: impl Fn(&Vec2) -> Vec2) -> Cones {
+    pub fn map(&self, f: impl Fn(&Vec2<R>) -> Vec2<R>) -> Cones<R> {
         Cones(self.0.iter().map(|c| c.iter().map(&f).collect()).collect())
     }
     /// Whether the interior of these cones, moved by s, meets that of the others.
@@ -38,7 +38,7 @@ impl Cones {
     /// Two convex cones meet so iff s lies inside the cone that the others and the negatives of
     /// these generate; that is so iff no line through the apex along a generator has all of them
     /// on one closed side and s on the other.
-    pub fn overlap(&self, s: &Vec2, others: &Cones) -> bool {
+    pub fn overlap(&self, s: &Vec2<R>, others: &Cones<R>) -> bool {
         self.0.iter().any(|mine| {
             others
                 .0
@@ -48,19 +48,19 @@ impl Cones {
     }
 }
 
-fn half_plane(ring: &Ring, k: usize) -> Vec<Vec2> {
+fn half_plane<R: Scalar>(ring: &Ring<R>, k: usize) -> Vec<Vec2<R>> {
     let along = &ring.vertices[ring.next(k)] - &ring.vertices[k];
     vec![-&along, along, -&ring.normals[k]]
 }
 
-fn convex_overlap(mine: &[Vec2], s: &Vec2, theirs: &[Vec2]) -> bool {
-    let all: Vec<Vec2> = theirs
+fn convex_overlap<R: Scalar>(mine: &[Vec2<R>], s: &Vec2<R>, theirs: &[Vec2<R>]) -> bool {
+    let all: Vec<Vec2<R>> = theirs
         .iter()
         .cloned()
         .chain(mine.iter().map(|g| -g))
         .collect();
     let candidates = all.iter().map(Vec2::right_normal).flat_map(|n| [-&n, n]);
-    let zero = Rat::zero();
+    let zero = R::zero();
     !candidates
         .into_iter()
         .any(|n| n.dot(s) <= zero && all.iter().all(|g| n.dot(g) >= zero))

@@ -3,52 +3,52 @@
 
 use super::{Contact, ContactKind, ObstacleShape, PawlShape, Trig};
 use crate::geometry::Vec2;
-use crate::number::{Interval, Rat};
+use crate::number::{Interval, Rat, Scalar};
 
 /// A straight phase as one hinge sees it: p(t) = p₀ + v·t, 0 ≤ t ≤ duration.
 #[derive(Clone, Debug)]
-pub struct Frame {
+pub struct Frame<R = Rat> {
     /// Hinge at the start of the phase.
-    pub p0: Vec2,
+    pub p0: Vec2<R>,
     /// Velocity, not zero.
-    pub v: Vec2,
+    pub v: Vec2<R>,
     /// How long the phase lasts.
-    pub duration: Rat,
+    pub duration: R,
 }
 
 /// One contact pair over one phase (DP eqs. 3, 4, 22): the C-function f = f₀ + t·f₁ is positive
 /// where the features are apart and negative where they penetrate.
 #[derive(Clone, Debug)]
-pub struct Patch {
+pub struct Patch<R = Rat> {
     /// Who touches whom.
     pub contact: Contact,
     /// The part of the C-function without t.
-    pub f0: Trig,
+    pub f0: Trig<R>,
     /// The part of the C-function with t.
-    pub f1: Trig,
+    pub f1: Trig<R>,
     /// Both must be ≥ 0: neither polygon penetrates beside the contact (applicability, DP §5).
-    pub wedge: [Trig; 2],
+    pub wedge: [Trig<R>; 2],
     /// (g₀, g₁): both g₀ + t·g₁ must be ≥ 0: the contact lies between the ends of the edge.
-    pub location: [(Trig, Trig); 2],
+    pub location: [(Trig<R>, Trig<R>); 2],
     /// The pawl vertex and obstacle vertex that meet where each location condition ends.
-    pub ends: [(Vec2, Vec2); 2],
+    pub ends: [(Vec2<R>, Vec2<R>); 2],
     /// The pawl edge (direction) and obstacle edge (normal) that are flush where each wedge
     /// condition ends, as ids: (pawl edge, obstacle ring's global edge id).
     pub flush: [(u32, u32); 2],
 }
 
 /// R_θ a · n as a function of θ.
-fn dot(a: &Vec2, n: &Vec2) -> Trig {
-    Trig::new(a.dot(n), a.cross(n), Rat::zero())
+fn dot<R: Scalar>(a: &Vec2<R>, n: &Vec2<R>) -> Trig<R> {
+    Trig::new(a.dot(n), a.cross(n), R::zero())
 }
 
 /// n · R_θ m = R_θ m · n, plus a constant.
-fn dot_plus(a: &Vec2, n: &Vec2, k: Rat) -> Trig {
+fn dot_plus<R: Scalar>(a: &Vec2<R>, n: &Vec2<R>, k: R) -> Trig<R> {
     Trig::new(a.dot(n), a.cross(n), k)
 }
 
-fn box_of(points: &[&Vec2]) -> (Interval, Interval) {
-    let hull = |f: fn(&Vec2) -> Interval| {
+fn box_of<R: Scalar>(points: &[&Vec2<R>]) -> (Interval, Interval) {
+    let hull = |f: fn(&Vec2<R>) -> Interval| {
         points.iter().map(|p| f(p)).fold(
             Interval {
                 lo: f64::INFINITY,
@@ -73,7 +73,11 @@ fn dist2(a: (Interval, Interval), b: (Interval, Interval)) -> Interval {
 /// pawl's reach along the hinge's path (idea 4: what cannot be met is never made).
 ///
 /// Cost: one certified interval test a pair; exact work only for pairs within reach.
-pub fn patches(frame: &Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> Vec<Patch> {
+pub fn patches<R: Scalar>(
+    frame: &Frame<R>,
+    pawl: &PawlShape<R>,
+    obstacles: &[ObstacleShape<R>],
+) -> Vec<Patch<R>> {
     let ring = &pawl.ring;
     let m = ring.len();
     let p_end = &frame.p0 + &frame.v.scale(&frame.duration);
@@ -122,16 +126,16 @@ pub fn patches(frame: &Frame, pawl: &PawlShape, obstacles: &[ObstacleShape]) -> 
 }
 
 #[allow(clippy::too_many_arguments)]
-fn type_b(
-    frame: &Frame,
-    pawl: &PawlShape,
-    oring: &super::Ring,
+fn type_b<R: Scalar>(
+    frame: &Frame<R>,
+    pawl: &PawlShape<R>,
+    oring: &super::Ring<R>,
     o: usize,
     r: usize,
     i: usize,
     j: usize,
     edge_base: u32,
-) -> Patch {
+) -> Patch<R> {
     let ring = &pawl.ring;
     let a = &ring.vertices[i];
     let n = &oring.normals[j];
@@ -161,8 +165,8 @@ fn type_b(
                 Trig::constant(vt.clone()),
             ),
             (
-                dot_plus(a, &tau, -past.dot(&tau)).neg(),
-                Trig::constant(-vt),
+                dot_plus(a, &tau, past.dot(&tau).negated()).neg(),
+                Trig::constant(vt.negated()),
             ),
         ],
         ends: [(a.clone(), q0.clone()), (a.clone(), q1.clone())],
@@ -174,16 +178,16 @@ fn type_b(
 }
 
 #[allow(clippy::too_many_arguments)]
-fn type_a(
-    frame: &Frame,
-    pawl: &PawlShape,
-    oring: &super::Ring,
+fn type_a<R: Scalar>(
+    frame: &Frame<R>,
+    pawl: &PawlShape<R>,
+    oring: &super::Ring<R>,
     o: usize,
     r: usize,
     i: usize,
     j: usize,
     edge_base: u32,
-) -> Patch {
+) -> Patch<R> {
     let ring = &pawl.ring;
     let m = &ring.normals[i];
     let (a0, a1) = (&ring.vertices[i], &ring.vertices[ring.next(i)]);
@@ -206,12 +210,18 @@ fn type_a(
             obstacle_feature: j as u32,
             pawl_feature: i as u32,
         },
-        f0: dot_plus(m, &w, -&e),
+        f0: dot_plus(m, &w, e.negated()),
         f1: dot(m, &minus_v),
         wedge: [dot(m, &ahead), dot(m, &behind)],
         location: [
-            (dot_plus(&tau, &w, -a0.dot(&tau)), dot(&tau, &minus_v)),
-            (dot_plus(&tau, &w, -a1.dot(&tau)).neg(), dot(&tau, v)),
+            (
+                dot_plus(&tau, &w, a0.dot(&tau).negated()),
+                dot(&tau, &minus_v),
+            ),
+            (
+                dot_plus(&tau, &w, a1.dot(&tau).negated()).neg(),
+                dot(&tau, v),
+            ),
         ],
         ends: [(a0.clone(), q.clone()), (a1.clone(), q.clone())],
         flush: [

@@ -1,26 +1,27 @@
 //! Polygons prepared for contact: edges with outward normals, vertices with their convexity.
 
 use crate::geometry::Vec2;
+use crate::number::{Rat, Scalar};
 use crate::scene::{Obstacle, Pawl};
 
 /// A closed ring of vertices in listing order, with the side on which the solid lies.
 #[derive(Clone, Debug)]
-pub struct Ring {
+pub struct Ring<R = Rat> {
     /// Vertices as listed.
-    pub vertices: Vec<Vec2>,
+    pub vertices: Vec<Vec2<R>>,
     /// For each edge k (vertex k to k + 1) its outward normal, as long as the edge.
-    pub normals: Vec<Vec2>,
+    pub normals: Vec<Vec2<R>>,
     /// For each vertex whether it is strictly convex: only such a vertex can touch.
     pub convex: Vec<bool>,
 }
 
-impl Ring {
+impl<R: Scalar> Ring<R> {
     /// Prepares a simple ring; `hole` means that the solid lies outside of it.
-    pub fn new(vertices: Vec<Vec2>, hole: bool) -> Ring {
+    pub fn new(vertices: Vec<Vec2<R>>, hole: bool) -> Ring<R> {
         let n = vertices.len();
-        let mut area2 = crate::number::Rat::zero();
+        let mut area2 = R::zero();
         for i in 0..n {
-            area2 += &vertices[i].cross(&vertices[(i + 1) % n]);
+            area2 = area2.plus(&vertices[i].cross(&vertices[(i + 1) % n]));
         }
         let solid_left = (area2.sign() > 0) != hole;
         let mut normals = Vec::with_capacity(n);
@@ -59,15 +60,17 @@ impl Ring {
 
 /// A pawl's polygon about its hinge.
 #[derive(Clone, Debug)]
-pub struct PawlShape {
+pub struct PawlShape<R = Rat> {
     /// The ring, relative to the hinge, at θ = 0.
-    pub ring: Ring,
+    pub ring: Ring<R>,
 }
 
-impl PawlShape {
+impl<R: Scalar> PawlShape<R> {
     /// The pawl's ring about its hinge.
-    pub fn new(pawl: &Pawl) -> PawlShape {
-        let rel = pawl.vertices.iter().map(|p| p - &pawl.hinge).collect();
+    pub fn new(pawl: &Pawl) -> PawlShape<R> {
+        let hinge = &Vec2::from_exact(&pawl.hinge);
+        let rel = pawl.vertices.iter().map(|p| &Vec2::from_exact(p) - hinge);
+        let rel = rel.collect();
         PawlShape {
             ring: Ring::new(rel, false),
         }
@@ -76,16 +79,17 @@ impl PawlShape {
 
 /// An obstacle's rings.
 #[derive(Clone, Debug)]
-pub struct ObstacleShape {
+pub struct ObstacleShape<R = Rat> {
     /// The outer ring, then the holes.
-    pub rings: Vec<Ring>,
+    pub rings: Vec<Ring<R>>,
 }
 
-impl ObstacleShape {
+impl<R: Scalar> ObstacleShape<R> {
     /// The obstacle's rings.
-    pub fn new(obstacle: &Obstacle) -> ObstacleShape {
-        let mut rings = vec![Ring::new(obstacle.vertices.clone(), false)];
-        rings.extend(obstacle.holes.iter().map(|h| Ring::new(h.clone(), true)));
+    pub fn new(obstacle: &Obstacle) -> ObstacleShape<R> {
+        let ring = |r: &Vec<Vec2>, hole| Ring::new(r.iter().map(Vec2::from_exact).collect(), hole);
+        let mut rings = vec![ring(&obstacle.vertices, false)];
+        rings.extend(obstacle.holes.iter().map(|h| ring(h, true)));
         ObstacleShape { rings }
     }
 }

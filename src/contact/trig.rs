@@ -1,4 +1,4 @@
-use crate::number::{Poly, Rat};
+use crate::number::{Rat, Scalar};
 
 /// One of the two charts of the circle of orientations.
 ///
@@ -38,84 +38,87 @@ impl Chart {
     }
 }
 
-/// c·cos θ + s·sin θ + k with rational coefficients.
+/// c·cos θ + s·sin θ + k.
 ///
 /// Multiplied by the positive 1 + x² it is a quadratic in x in either chart, with the same sign.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Default)]
-pub struct Trig {
+pub struct Trig<R = Rat> {
     /// Coefficient of cos θ.
-    pub c: Rat,
+    pub c: R,
     /// Coefficient of sin θ.
-    pub s: Rat,
+    pub s: R,
     /// Constant.
-    pub k: Rat,
+    pub k: R,
 }
 
-impl Trig {
+impl<R: Scalar> Trig<R> {
     /// c·cos θ + s·sin θ + k.
-    pub fn new(c: Rat, s: Rat, k: Rat) -> Trig {
+    pub fn new(c: R, s: R, k: R) -> Trig<R> {
         Trig { c, s, k }
     }
     /// A constant.
-    pub fn constant(k: Rat) -> Trig {
+    pub fn constant(k: R) -> Trig<R> {
         Trig {
-            c: Rat::zero(),
-            s: Rat::zero(),
+            c: R::zero(),
+            s: R::zero(),
             k,
         }
     }
     /// The quadratic (constant first) that has this function's sign in the chart.
-    pub fn form(&self, chart: Chart) -> [Rat; 3] {
-        let (sum, dif) = (&self.k + &self.c, &self.k - &self.c);
-        let lin = &self.s + &self.s;
+    pub fn form(&self, chart: Chart) -> [R; 3] {
+        let (sum, dif) = (self.k.plus(&self.c), self.k.minus(&self.c));
+        let lin = self.s.plus(&self.s);
         match chart {
             Chart::Rest => [sum, lin, dif],
-            Chart::Back => [dif, -lin, sum],
+            Chart::Back => [dif, lin.negated(), sum],
         }
     }
-    /// [`Trig::form`] as an integer polynomial, up to a positive factor.
-    pub fn poly(&self, chart: Chart) -> Poly {
-        Poly::from_rats(&self.form(chart))
-    }
     /// The value at chart position x, times 1 + x².
-    pub fn value(&self, chart: Chart, x: &Rat) -> Rat {
+    pub fn value(&self, chart: Chart, x: &R) -> R {
         let [a, b, c] = self.form(chart);
-        (c * x + b) * x + a
+        c.times(x).plus(&b).times(x).plus(&a)
     }
     /// Whether identically zero.
     pub fn is_zero(&self) -> bool {
         self.c.is_zero() && self.s.is_zero() && self.k.is_zero()
     }
     /// The negated function.
-    pub fn neg(&self) -> Trig {
+    pub fn neg(&self) -> Trig<R> {
         Trig {
-            c: -&self.c,
-            s: -&self.s,
-            k: -&self.k,
+            c: self.c.negated(),
+            s: self.s.negated(),
+            k: self.k.negated(),
         }
     }
     /// Multiplied by a scalar.
-    pub fn scale(&self, f: &Rat) -> Trig {
+    pub fn scale(&self, f: &R) -> Trig<R> {
         Trig {
-            c: &self.c * f,
-            s: &self.s * f,
-            k: &self.k * f,
+            c: self.c.times(f),
+            s: self.s.times(f),
+            k: self.k.times(f),
         }
     }
     /// The sum.
-    pub fn add(&self, o: &Trig) -> Trig {
+    pub fn add(&self, o: &Trig<R>) -> Trig<R> {
         Trig {
-            c: &self.c + &o.c,
-            s: &self.s + &o.s,
-            k: &self.k + &o.k,
+            c: self.c.plus(&o.c),
+            s: self.s.plus(&o.s),
+            k: self.k.plus(&o.k),
         }
     }
     /// Derivative with respect to θ.
-    pub fn derivative(&self) -> Trig {
+    pub fn derivative(&self) -> Trig<R> {
         Trig {
             c: self.s.clone(),
-            s: -&self.c,
-            k: Rat::zero(),
+            s: self.c.negated(),
+            k: R::zero(),
         }
+    }
+}
+
+impl Trig {
+    /// [`Trig::form`] as an integer polynomial, up to a positive factor.
+    pub fn poly(&self, chart: Chart) -> crate::number::Poly {
+        crate::number::Poly::from_rats(&self.form(chart))
     }
 }

@@ -30,6 +30,16 @@ impl Approx {
     pub(crate) fn exact(v: f64) -> Approx {
         Approx { v, e: 0.0 }
     }
+    /// An integer.
+    #[inline]
+    pub(crate) fn from_int(x: i128) -> Approx {
+        let v = x as f64;
+        let exact = x.unsigned_abs() < 1 << 53;
+        Approx {
+            v,
+            e: if exact { 0.0 } else { v.abs() * f64::EPSILON },
+        }
+    }
     /// Anything between the ends.
     #[inline]
     pub(crate) fn between(lo: f64, hi: f64) -> Approx {

@@ -20,7 +20,7 @@ impl Tracer<'_> {
     pub(crate) fn islands(&mut self) {
         let mut around = EMPTY;
         for e in 0..self.edges.len() {
-            around = hull(&around, &self.bounds(self.edges[e].item));
+            around = hull(&around, &self.items[self.edges[e].item as usize].bounds);
         }
         let mut open = Vec::new();
         for comp in 0..self.touched.len() as u32 {

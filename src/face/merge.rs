@@ -56,7 +56,7 @@ pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, 
             item: i as u32,
         });
     }
-    trace(k, &items, &comps, ends, start)
+    trace(k, &mut items, &comps, ends, start)
 }
 
 /// The face of several faces' edges, each face a colour.
@@ -78,12 +78,12 @@ fn merge(k: &mut Kernel, faces: Vec<Face>, start: Point) -> Result<Face, OnArc> 
         }));
         points.extend(face.points);
     }
-    trace(k, &items, &comps, points, start)
+    trace(k, &mut items, &comps, points, start)
 }
 
 fn trace(
     k: &mut Kernel,
-    items: &[Item],
+    items: &mut [Item],
     comps: &[Comp],
     points: Vec<Point>,
     start: Point,
@@ -177,7 +177,7 @@ fn extract(t: &mut Tracer<'_>) -> Face {
             arc: item.arc,
             // Uncut, it keeps its box.
             bounds: if item.l == low.x && item.r == high.x && carrier == item.carrier {
-                t.bounds(edge.item)
+                item.bounds
             } else {
                 EMPTY
             },

@@ -15,13 +15,19 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod approx;
+mod compare;
 mod hash;
 mod index;
 mod island;
+mod isolate;
+mod item;
 mod kernel;
+mod meet;
 mod merge;
+mod numbers;
 mod read;
 mod run;
+mod stops;
 mod trace;
 
 pub use kernel::Stats;

@@ -1,37 +1,41 @@
-use crate::number::Rat;
+use crate::number::{Rat, Scalar};
 
-/// A point or vector of the plane with rational coordinates.
+/// A point or vector of the plane; its coordinates are rational unless said otherwise.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Default, PartialOrd, Ord)]
-pub struct Vec2 {
+pub struct Vec2<R = Rat> {
     /// To the right.
-    pub x: Rat,
+    pub x: R,
     /// Up.
-    pub y: Rat,
+    pub y: R,
 }
 
-impl Vec2 {
+impl<R: Scalar> Vec2<R> {
     /// A point from its coordinates.
-    pub fn new(x: Rat, y: Rat) -> Vec2 {
+    pub fn new(x: R, y: R) -> Vec2<R> {
         Vec2 { x, y }
     }
+    /// A rational point in another arithmetic.
+    pub fn from_exact(p: &Vec2) -> Vec2<R> {
+        Vec2::new(R::from_rat(&p.x), R::from_rat(&p.y))
+    }
     /// x·x' + y·y'.
-    pub fn dot(&self, o: &Vec2) -> Rat {
-        &self.x * &o.x + &self.y * &o.y
+    pub fn dot(&self, o: &Vec2<R>) -> R {
+        self.x.times(&o.x).plus(&self.y.times(&o.y))
     }
     /// x·y' − y·x', the component out of the plane of the cross product.
-    pub fn cross(&self, o: &Vec2) -> Rat {
-        &self.x * &o.y - &self.y * &o.x
+    pub fn cross(&self, o: &Vec2<R>) -> R {
+        self.x.times(&o.y).minus(&self.y.times(&o.x))
     }
     /// Turned by −90°: (y, −x). The outward normal of an edge whose solid lies to its left.
-    pub fn right_normal(&self) -> Vec2 {
-        Vec2::new(self.y.clone(), -&self.x)
+    pub fn right_normal(&self) -> Vec2<R> {
+        Vec2::new(self.y.clone(), self.x.negated())
     }
     /// Multiplied by a scalar.
-    pub fn scale(&self, k: &Rat) -> Vec2 {
-        Vec2::new(&self.x * k, &self.y * k)
+    pub fn scale(&self, k: &R) -> Vec2<R> {
+        Vec2::new(self.x.times(k), self.y.times(k))
     }
     /// |self|².
-    pub fn norm2(&self) -> Rat {
+    pub fn norm2(&self) -> R {
         self.dot(self)
     }
     /// Whether both coordinates are zero.
@@ -39,31 +43,34 @@ impl Vec2 {
         self.x.is_zero() && self.y.is_zero()
     }
     /// Turned by θ where u = tan(θ/2), exactly.
-    pub fn rotate_tan_half(&self, u: &Rat) -> Vec2 {
-        let uu = u * u;
-        let one = Rat::one();
-        let den = &one + &uu;
-        let c = (&one - &uu) / &den;
-        let s = (u + u) / &den;
-        Vec2::new(&c * &self.x - &s * &self.y, &s * &self.x + &c * &self.y)
+    pub fn rotate_tan_half(&self, u: &R) -> Vec2<R> {
+        let uu = u.times(u);
+        let one = R::one();
+        let den = one.plus(&uu);
+        let c = one.minus(&uu).over(&den);
+        let s = u.plus(u).over(&den);
+        Vec2::new(
+            c.times(&self.x).minus(&s.times(&self.y)),
+            s.times(&self.x).plus(&c.times(&self.y)),
+        )
     }
 }
 
-impl std::ops::Add<&Vec2> for &Vec2 {
-    type Output = Vec2;
-    fn add(self, o: &Vec2) -> Vec2 {
-        Vec2::new(&self.x + &o.x, &self.y + &o.y)
+impl<R: Scalar> std::ops::Add<&Vec2<R>> for &Vec2<R> {
+    type Output = Vec2<R>;
+    fn add(self, o: &Vec2<R>) -> Vec2<R> {
+        Vec2::new(self.x.plus(&o.x), self.y.plus(&o.y))
     }
 }
-impl std::ops::Sub<&Vec2> for &Vec2 {
-    type Output = Vec2;
-    fn sub(self, o: &Vec2) -> Vec2 {
-        Vec2::new(&self.x - &o.x, &self.y - &o.y)
+impl<R: Scalar> std::ops::Sub<&Vec2<R>> for &Vec2<R> {
+    type Output = Vec2<R>;
+    fn sub(self, o: &Vec2<R>) -> Vec2<R> {
+        Vec2::new(self.x.minus(&o.x), self.y.minus(&o.y))
     }
 }
-impl std::ops::Neg for &Vec2 {
-    type Output = Vec2;
-    fn neg(self) -> Vec2 {
-        Vec2::new(-&self.x, -&self.y)
+impl<R: Scalar> std::ops::Neg for &Vec2<R> {
+    type Output = Vec2<R>;
+    fn neg(self) -> Vec2<R> {
+        Vec2::new(self.x.negated(), self.y.negated())
     }
 }

@@ -1,6 +1,6 @@
 //! What solving gives: a status, the exact objective, and a certificate that proves both.
 
-use super::basis::{Frame, RowVector, Status as Resting};
+use super::basis::{Basis, Frame, RowVector, Status as Resting};
 use super::model::Model;
 use super::problem::Problem;
 use super::simplex::Verdict;
@@ -72,6 +72,53 @@ pub enum Place {
     Zero,
 }
 
+/// A basis in the model's own terms: which columns and rows are basic, where the others rest.
+///
+/// Every [`Outcome`] of the exact method carries the last one, and [`super::Options::basis`] takes
+/// one as the start for a similar program. As a start it need not fit: lists that are too short
+/// or too long, places without a bound, a wrong number of basic ones or a singular choice are all
+/// repaired, since exact arithmetic decides in any case.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Places {
+    /// Places of the columns.
+    pub columns: Vec<Place>,
+    /// Places of the rows' activities.
+    pub rows: Vec<Place>,
+}
+
+impl Places {
+    pub(crate) fn of(basis: &Basis, n: usize) -> Places {
+        let place = |s: &Resting| match s {
+            Resting::Basic => Place::Basic,
+            Resting::Lower => Place::Lower,
+            Resting::Upper => Place::Upper,
+            Resting::Zero => Place::Zero,
+        };
+        Places {
+            columns: basis.status[..n].iter().map(place).collect(),
+            rows: basis.status[n..].iter().map(place).collect(),
+        }
+    }
+
+    /// The basis of a problem that this means. Columns that are not mentioned rest, rows that are
+    /// not mentioned are basic (slack).
+    pub(crate) fn basis(&self, problem: &Problem) -> Basis {
+        let mut basis = Basis::slack(problem);
+        let (columns, rows) = basis.status.split_at_mut(problem.n);
+        let given = self.columns.iter().zip(columns);
+        for (place, slot) in given.chain(self.rows.iter().zip(rows)) {
+            *slot = match place {
+                Place::Basic => Resting::Basic,
+                Place::Lower => Resting::Lower,
+                Place::Upper => Resting::Upper,
+                Place::Zero => Resting::Zero,
+            };
+        }
+        basis.tidy(problem);
+        basis
+    }
+}
+
 /// What proves a result. Vectors are in the model's own terms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Certificate {
@@ -139,6 +186,12 @@ pub struct Outcome {
     pub accuracy: &'static str,
     /// The proof; `None` where nothing is decided, or for `float`.
     pub certificate: Option<Certificate>,
+    /// The last basis of the exact method: the optimal one where there is an optimum. None where
+    /// that method was not reached.
+    pub basis: Option<Places>,
+    /// Values of the columns as doubles, for pictures and directions: those of the exact vertex
+    /// where there is one, else what floating point found. Empty where neither is known.
+    pub near: Vec<f64>,
     /// Values of the columns, where asked for.
     pub values: Option<Vec<Rat>>,
     /// Prices of the rows, where asked for.
@@ -160,6 +213,8 @@ impl Outcome {
             method: "exact",
             accuracy: "exact",
             certificate: None,
+            basis: None,
+            near: Vec::new(),
             values: None,
             prices: None,
             exact_pivots: 0,
@@ -170,12 +225,13 @@ impl Outcome {
 }
 
 /// Bits of vectors up to which a certificate carries them.
-const VECTOR_BITS: u64 = 4_000_000;
+pub(crate) const VECTOR_BITS: u64 = 4_000_000;
 
 /// Turns the exact method's verdict into a result in the model's terms.
 pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) -> Outcome {
     let mut out = Outcome::undecided("");
     out.reason = None;
+    out.basis = Some(Places::of(verdict.basis(), model.columns.len()));
     match verdict {
         Verdict::Optimal {
             frame,
@@ -184,6 +240,7 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
         } => {
             let p = frame.problem;
             out.status = Status::Optimal;
+            out.near = near(frame, values);
             let mut terms = Vec::new();
             let mut constant = Int::zero();
             for j in 0..p.n {
@@ -219,15 +276,10 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
             }
             if out.certificate.is_none() {
                 let (rows, columns) = frame.kernel.order();
-                let place = |s: &Resting| match s {
-                    Resting::Basic => Place::Basic,
-                    Resting::Lower => Place::Lower,
-                    Resting::Upper => Place::Upper,
-                    Resting::Zero => Place::Zero,
-                };
+                let places = Places::of(&frame.basis, p.n);
                 out.certificate = Some(Certificate::Basis {
-                    columns: frame.basis.status[..p.n].iter().map(place).collect(),
-                    rows: frame.basis.status[p.n..].iter().map(place).collect(),
+                    columns: places.columns,
+                    rows: places.rows,
                     order: rows
                         .iter()
                         .zip(columns)
@@ -316,8 +368,28 @@ fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
     d * &common
 }
 
+/// Values of the columns as doubles.
+fn near(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vec<f64> {
+    let p = frame.problem;
+    let double = |v: &Rat| v.nearest_f64().unwrap_or(f64::INFINITY);
+    // The scale of the bounds may lie past the double range, and values with it: their quotient
+    // is what counts, so both go by mantissa and exponent.
+    let (scale, exponent) = super::lift::mantissa(&p.bound_scale);
+    (0..p.n)
+        .map(|j| {
+            let v = if frame.basis.status[j] == Resting::Basic {
+                let v = values.approximate(&values.component(frame, j));
+                super::lift::ldexp(v / scale, -exponent)
+            } else {
+                double(&Rat::new(frame.resting_value(j), p.bound_scale.clone()))
+            };
+            v * double(&p.column_scale[j])
+        })
+        .collect()
+}
+
 /// Values of the columns, unscaled.
-fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
+pub(crate) fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
     let p = frame.problem;
     let d = &values.solution.denominator;
     let mut numerators = Vec::new();
@@ -338,7 +410,7 @@ fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
 }
 
 /// Prices of the rows, unscaled; `scale` is that of the costs.
-fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
+pub(crate) fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
     let p: &Problem = frame.problem;
     let denominator = &y.solution.denominator * &scale.abs();
     let sign = Rat::from(i64::from(scale.sign()));

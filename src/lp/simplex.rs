@@ -12,10 +12,12 @@
 //! fixed: such a run is a run of the simplex method on *one* program, where an infeasible
 //! variable has its violated bound as its only one. After [`PATIENCE`] steps of length zero the
 //! choice of both variables is by least index among the candidates (Bland's rule) until a step
-//! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least). There are finitely many statuses.
+//! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least).
+//! There are finitely many statuses, and the method changes at most three times: the search for a
+//! feasible point that [`run`] may begin with ends in one, after which the primal method keeps it.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
-use super::budget::{Budget, Exhausted};
+use super::budget::{Budget, Exhausted, Stage};
 use super::problem::Problem;
 use crate::number::Int;
 use std::cmp::Ordering;
@@ -43,6 +45,21 @@ pub(crate) enum Verdict<'a> {
     },
 }
 
+impl Verdict<'_> {
+    /// The basis it was reached at.
+    pub(crate) fn basis(&self) -> &Basis {
+        match self {
+            Verdict::Optimal { frame, .. }
+            | Verdict::Infeasible { frame, .. }
+            | Verdict::Unbounded { frame, .. } => &frame.basis,
+        }
+    }
+}
+
+/// Is shown every basis that is not the last: its values where they are feasible, its prices.
+/// Ends the run by answering true.
+pub(crate) type Watch<'w> = dyn FnMut(&Frame<'_>, Option<&ColumnVector>, &RowVector) -> bool + 'w;
+
 /// What a run took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Effort {
@@ -63,9 +80,15 @@ enum Step<'a> {
 }
 
 /// Runs the exact simplex method from a basis (repaired if singular) to the end.
+///
+/// `blame` is a basic variable that floating point holds for irreparable. The question is then
+/// first whether there is any feasible point: costs are taken for zero, for which every basis is
+/// dual feasible, until the dual method has brought a feasible basis or a proof that there is none.
 pub(crate) fn run<'a>(
     problem: &'a Problem,
     start: Basis,
+    blame: Option<usize>,
+    watch: &mut Watch<'_>,
     budget: &Budget,
     effort: &mut Effort,
 ) -> Result<Verdict<'a>, (Exhausted, Basis)> {
@@ -73,11 +96,20 @@ pub(crate) fn run<'a>(
     let mut stalled = 0;
     let mut regular = false;
     let mut guesses = [None, None, None];
+    let mut seeking = blame;
     loop {
+        budget.report(Stage::Exact, effort.pivots);
         let frame = Frame::new(problem, basis, regular);
         regular = true;
         let before = frame.basis.clone();
-        match step(frame, stalled >= PATIENCE, &mut guesses, budget) {
+        match step(
+            frame,
+            stalled >= PATIENCE,
+            &mut seeking,
+            watch,
+            &mut guesses,
+            budget,
+        ) {
             Ok(Step::Done(verdict)) => return Ok(*verdict),
             Ok(Step::Move {
                 basis: next,
@@ -97,6 +129,8 @@ type Guesses = [Option<Int>; 3];
 fn step<'a>(
     frame: Frame<'a>,
     bland: bool,
+    seeking: &mut Option<usize>,
+    watch: &mut Watch<'_>,
     guesses: &mut Guesses,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
@@ -109,6 +143,18 @@ fn step<'a>(
         .map(|v| (v, breach(&frame, &values, v)))
         .collect();
     let infeasible = breaches.iter().any(|b| b.1 != Breach::None);
+    if !infeasible {
+        *seeking = None;
+    }
+    if let Some(first) = *seeking {
+        let none = frame.price(|_| Int::zero(), Some(&Int::one()), budget)?;
+        let wrong = |b: &&(usize, Breach)| b.0 == first && b.1 != Breach::None;
+        let breaches = match breaches.iter().find(wrong) {
+            Some(b) if !bland => std::slice::from_ref(b),
+            _ => &breaches[..],
+        };
+        return dual_step(frame, &values, breaches, &none, bland, guesses, budget);
+    }
     let duals = frame.price(|v| cost(p, v), guesses[0].as_ref(), budget)?;
     let improving = entering(&frame, &duals, bland);
     if !infeasible {
@@ -119,7 +165,13 @@ fn step<'a>(
                 duals,
             })));
         };
+        if watch(&frame, Some(&values), &duals) {
+            return Err(Exhausted);
+        }
         return primal_step(frame, values, breaches, q, sign, guesses, budget);
+    }
+    if watch(&frame, None, &duals) {
+        return Err(Exhausted);
     }
     if improving.is_none() {
         return dual_step(frame, &values, &breaches, &duals, bland, guesses, budget);

@@ -17,12 +17,18 @@
 //! alone: a line and a quadratic in t (DP eqs. 18–21). Neither needs a normalised normal.
 
 use crate::contact::{Contact, ContactKind, Patch, Trig};
-use crate::number::{Poly, Rat};
-use crate::slice::{ArcId, Shape, Slice, Time};
+use crate::kernel::{Instant, Kernel, Polynomial, Position};
+use crate::number::Scalar;
+use crate::slice::{ArcId, Shape, Slice};
 
 /// The earliest time t ≥ `from` such that the contact sticks just after t while the state follows
 /// the arc; `None` if it slides to the arc's end. `mu` is Coulomb's coefficient.
-pub fn stick_time(slice: &Slice, arc: ArcId, from: &Time, mu: &Rat) -> Option<Time> {
+pub fn stick_time<K: Kernel>(
+    slice: &Slice<K>,
+    arc: ArcId,
+    from: &K::Time,
+    mu: &K::Num,
+) -> Option<K::Time> {
     if mu.sign() <= 0 {
         return None;
     }
@@ -42,19 +48,19 @@ pub fn stick_time(slice: &Slice, arc: ArcId, from: &Time, mu: &Rat) -> Option<Ti
 
 /// Walks the gaps between `breaks` from `from` to `end`; the first gap in which `sticks` holds
 /// (tested at one rational time inside) begins the sticking.
-fn walk(
-    from: &Time,
-    end: &Time,
-    mut breaks: Vec<Time>,
-    mut sticks: impl FnMut(&Rat) -> bool,
-) -> Option<Time> {
+fn walk<K: Kernel>(
+    from: &K::Time,
+    end: &K::Time,
+    mut breaks: Vec<K::Time>,
+    mut sticks: impl FnMut(&K::Num) -> bool,
+) -> Option<K::Time> {
     breaks.retain(|t| t > from && t < end);
     breaks.sort();
     breaks.dedup();
     breaks.push(end.clone());
     let mut begin = from.clone();
     for b in breaks {
-        if sticks(&Time::between(&begin, &b)) {
+        if sticks(&K::Time::between(&begin, &b)) {
             return Some(begin);
         }
         begin = b;
@@ -62,17 +68,23 @@ fn walk(
     None
 }
 
-fn type_b(slice: &Slice, id: ArcId, patch: &Patch, from: &Time, mu: &Rat) -> Option<Time> {
+fn type_b<K: Kernel>(
+    slice: &Slice<K>,
+    id: ArcId,
+    patch: &Patch<K::Num>,
+    from: &K::Time,
+    mu: &K::Num,
+) -> Option<K::Time> {
     let arc = slice.arc(id);
     let v = &slice.frame.v;
     let a = &patch.ends[0].0;
-    let r_y = Trig::new(patch.f0.c.clone(), patch.f0.s.clone(), Rat::zero());
-    let r_x = Trig::new(patch.f0.s.clone(), -&patch.f0.c, Rat::zero());
-    let d = Trig::new(a.dot(v), a.cross(v), Rat::zero());
-    let pull = r_y.scale(&-mu);
+    let r_y = Trig::new(patch.f0.c.clone(), patch.f0.s.clone(), K::Num::zero());
+    let r_x = Trig::new(patch.f0.s.clone(), patch.f0.c.negated(), K::Num::zero());
+    let d = Trig::new(a.dot(v), a.cross(v), K::Num::zero());
+    let pull = r_y.scale(&mu.negated());
     let chart = arc.chart;
-    let polys = [d, pull.add(&r_x.neg()), pull.add(&r_x)].map(|t| t.poly(chart));
-    let inside = |sign: &dyn Fn(&Poly) -> i32| {
+    let polys = [d, pull.add(&r_x.neg()), pull.add(&r_x)].map(|t| K::Poly::of(&t.form(chart)));
+    let inside = |sign: &dyn Fn(&K::Poly) -> i32| {
         let [d, minus, plus] = [sign(&polys[0]), sign(&polys[1]), sign(&polys[2])];
         (d > 0 && minus > 0 && plus > 0) || (d < 0 && minus < 0 && plus < 0)
     };
@@ -81,43 +93,51 @@ fn type_b(slice: &Slice, id: ArcId, patch: &Patch, from: &Time, mu: &Rat) -> Opt
     }
     let mut breaks = Vec::new();
     for p in polys.iter().filter(|p| !p.is_zero()) {
-        for x in p.real_roots_in(&Rat::from(-1), &Rat::one()) {
+        for x in p.chart_roots() {
             if arc.spans_x(&x) {
                 breaks.push(slice.time_at(arc, &x));
             }
         }
     }
-    walk(from, &arc.end().t, breaks, |t| {
+    walk::<K>(from, &arc.end().t, breaks, |t| {
         slice
             .height_at(arc, t)
             .is_some_and(|x| inside(&|p| x.sign_of(p)))
     })
 }
 
-fn type_a(slice: &Slice, id: ArcId, patch: &Patch, from: &Time, mu: &Rat) -> Option<Time> {
+fn type_a<K: Kernel>(
+    slice: &Slice<K>,
+    id: ArcId,
+    patch: &Patch<K::Num>,
+    from: &K::Time,
+    mu: &K::Num,
+) -> Option<K::Time> {
     let v = &slice.frame.v;
     let w = &patch.ends[0].1 - &slice.frame.p0;
-    let e = -&patch.f0.k;
+    let e = patch.f0.k.negated();
     if e.is_zero() {
         return None;
     }
     let speed2 = v.norm2();
-    let m2 = (patch.f1.c.square() + patch.f1.s.square()) / &speed2;
+    let m2 = patch.f1.c.square().plus(&patch.f1.s.square()).over(&speed2);
     // d(t) = ṗ·r and (1 + μ²)·e² − |r|²·|m|².
-    let d = [v.dot(&w), -&speed2];
+    let along = v.dot(&w);
+    let d = [along.clone(), speed2.negated()];
+    let held = K::Num::one().plus(&mu.square()).times(&e.square());
     let k = [
-        (Rat::one() + mu.square()) * e.square() - w.norm2() * &m2,
-        (v.dot(&w) + v.dot(&w)) * &m2,
-        -(&speed2 * &m2),
+        held.minus(&w.norm2().times(&m2)),
+        along.plus(&along).times(&m2),
+        speed2.times(&m2).negated(),
     ];
-    let (d, k) = (Poly::from_rats(&d), Poly::from_rats(&k));
+    let (d, k) = (K::Poly::of(&d), K::Poly::of(&k));
     let breaks = d
-        .real_roots()
+        .roots()
         .into_iter()
-        .chain(k.real_roots())
-        .map(Time::at)
+        .chain(k.roots())
+        .map(K::Time::at)
         .collect();
-    walk(from, &slice.arc(id).end().t, breaks, |t| {
+    walk::<K>(from, &slice.arc(id).end().t, breaks, |t| {
         d.sign_at(t) * e.sign() > 0 && k.sign_at(t) > 0
     })
 }

@@ -2,8 +2,9 @@
 //! interval survives, and where its near end is just after.
 
 use crate::contact::{Chart, Contact};
-use crate::number::{Algebraic, Rat};
-use crate::slice::{ArcId, Germs, Point, Shape, Side, Slice, Time, cmp_horizontal};
+use crate::kernel::{Instant, Kernel, Polynomial, Position};
+use crate::number::Scalar;
+use crate::slice::{ArcId, Germs, Point, Shape, Side, Slice, cmp_horizontal};
 use std::cmp::Ordering;
 
 /// Where the state is while nothing happens.
@@ -31,31 +32,31 @@ pub(super) struct Incident {
 }
 
 /// A point with the second representation it has on a seam.
-pub(super) struct Place {
-    reps: [Option<(Point, i64)>; 2],
+pub(super) struct Place<K: Kernel> {
+    reps: [Option<(Point<K>, i64)>; 2],
 }
 
-impl Place {
+impl<K: Kernel> Place<K> {
     /// The place of a point in a half-turn.
-    pub(super) fn new(z: Point, half_turn: i64) -> Place {
-        let one = Rat::one();
-        let minus_one = Rat::from(-1);
+    pub(super) fn new(z: Point<K>, half_turn: i64) -> Place<K> {
+        let one = K::Num::one();
+        let minus_one = one.negated();
         // On the seam x is rational, and with it every time that is a function of x.
-        let mirrored = |x: &Rat| Point {
+        let mirrored = |x: &K::Num| Point {
             chart: z.chart.other(),
-            x: Algebraic::from(x.clone()),
-            t: match z.t.as_rat() {
+            x: K::Root::of(x.clone()),
+            t: match z.t.known() {
                 Some(_) => z.t.clone(),
-                None => z.t.exact().to_rat().map_or_else(|| z.t.clone(), Time::from),
+                None => z.t.decided().map_or_else(|| z.t.clone(), K::Time::of),
             },
             on: z.on.clone(),
         };
-        if z.x.cmp_rat(&one).is_eq() {
+        if z.x.cmp_num(&one).is_eq() {
             let above = mirrored(&minus_one);
             Place {
                 reps: [Some((z, half_turn)), Some((above, half_turn + 1))],
             }
-        } else if z.x.cmp_rat(&minus_one).is_eq() {
+        } else if z.x.cmp_num(&minus_one).is_eq() {
             let below = mirrored(&one);
             Place {
                 reps: [Some((below, half_turn - 1)), Some((z, half_turn))],
@@ -66,13 +67,13 @@ impl Place {
             }
         }
     }
-    fn reps(&self) -> impl Iterator<Item = (usize, &Point, i64)> {
+    fn reps(&self) -> impl Iterator<Item = (usize, &Point<K>, i64)> {
         self.reps
             .iter()
             .enumerate()
             .filter_map(|(i, r)| r.as_ref().map(|(p, h)| (i, p, *h)))
     }
-    fn point(&self, rank: usize) -> Option<&Point> {
+    fn point(&self, rank: usize) -> Option<&Point<K>> {
         self.reps.get(rank).and_then(|r| r.as_ref()).map(|(p, _)| p)
     }
 }
@@ -97,7 +98,7 @@ pub(super) enum Next {
 }
 
 /// All arcs that hold a place.
-pub(super) fn incident(slice: &Slice, place: &Place) -> Vec<Incident> {
+pub(super) fn incident<K: Kernel>(slice: &Slice<K>, place: &Place<K>) -> Vec<Incident> {
     let mut out = Vec::new();
     for (rank, z, half_turn) in place.reps() {
         for &id in slice.arcs_in(z.chart) {
@@ -115,7 +116,13 @@ pub(super) fn incident(slice: &Slice, place: &Place) -> Vec<Incident> {
     out
 }
 
-fn cmp_germs(slice: &Slice, place: &Place, a: &Incident, b: &Incident, after: bool) -> Ordering {
+fn cmp_germs<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
+    a: &Incident,
+    b: &Incident,
+    after: bool,
+) -> Ordering {
     if a.rank != b.rank {
         return a.rank.cmp(&b.rank);
     }
@@ -128,9 +135,9 @@ fn cmp_germs(slice: &Slice, place: &Place, a: &Incident, b: &Incident, after: bo
 
 /// The topmost and the bottommost of the arcs that leave to the right; of coincident ones the
 /// first contact.
-pub(super) fn right_extremes(
-    slice: &Slice,
-    place: &Place,
+pub(super) fn right_extremes<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
     inc: &[Incident],
 ) -> Option<(Incident, Incident)> {
     let right: Vec<&Incident> = inc.iter().filter(|i| i.germs.right).collect();
@@ -153,14 +160,18 @@ pub(super) fn right_extremes(
 }
 
 /// All arcs that leave to the right, from the bottom up.
-pub(super) fn right_sorted(slice: &Slice, place: &Place, inc: &[Incident]) -> Vec<Incident> {
+pub(super) fn right_sorted<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
+    inc: &[Incident],
+) -> Vec<Incident> {
     let mut right: Vec<Incident> = inc.iter().filter(|i| i.germs.right).cloned().collect();
     right.sort_by(|a, b| cmp_germs(slice, place, a, b, true));
     right
 }
 
 /// Position of an arc at rest's own place just after (or before), against θ = 0.
-fn against_rest(slice: &Slice, i: &Incident, after: bool) -> Ordering {
+fn against_rest<K: Kernel>(slice: &Slice<K>, i: &Incident, after: bool) -> Ordering {
     cmp_horizontal(slice.arc(i.arc), after)
 }
 
@@ -169,9 +180,9 @@ fn against_rest(slice: &Slice, i: &Incident, after: bool) -> Ordering {
 /// `at_rest` says whether the place is θ = 0. `free` tells by the polygons whether the side above
 /// (true) or below an arc is free just after; it is asked only where the interval splits at the
 /// state's own place.
-pub(super) fn resolve(
-    slice: &Slice,
-    place: &Place,
+pub(super) fn resolve<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
     inc: &[Incident],
     state: State,
     at_rest: bool,
@@ -263,9 +274,9 @@ pub(super) fn resolve(
 }
 
 /// The germ next above (`up`) or below another one to the right.
-fn neighbour<'a>(
-    slice: &Slice,
-    place: &Place,
+fn neighbour<'a, K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
     inc: &'a [Incident],
     of: &Incident,
     up: bool,
@@ -290,9 +301,9 @@ fn neighbour<'a>(
 /// Where the state's own curve goes on and the part beside it is still free, although something
 /// else begins at this very place: "away from rest the state keeps to the part that still borders
 /// its curve".
-fn kept_part(
-    slice: &Slice,
-    place: &Place,
+fn kept_part<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
     inc: &[Incident],
     own: ArcId,
     lower: bool,
@@ -317,9 +328,9 @@ fn kept_part(
 
 /// Whether rest touches a level that goes on and the part beside that level is still free. With
 /// `before`, only a level that was there already counts.
-pub(super) fn rests_on_level(
-    slice: &Slice,
-    place: &Place,
+pub(super) fn rests_on_level<K: Kernel>(
+    slice: &Slice<K>,
+    place: &Place<K>,
     inc: &[Incident],
     before: bool,
     free: &dyn Fn(ArcId, bool) -> bool,
@@ -339,7 +350,12 @@ pub(super) fn rests_on_level(
 }
 
 /// The near end of an interval whose side above (`lower`) or below the place is open.
-pub(super) fn settle(slice: &Slice, near: Option<Incident>, lower: bool, at_rest: bool) -> Next {
+pub(super) fn settle<K: Kernel>(
+    slice: &Slice<K>,
+    near: Option<Incident>,
+    lower: bool,
+    at_rest: bool,
+) -> Next {
     let Some(i) = near else {
         return if at_rest {
             Next::Rest
@@ -363,8 +379,8 @@ pub(super) fn settle(slice: &Slice, near: Option<Incident>, lower: bool, at_rest
 }
 
 /// What follows at rest, given the sides that are open and the extreme arcs to the right.
-pub(super) fn at_rest_next(
-    slice: &Slice,
+pub(super) fn at_rest_next<K: Kernel>(
+    slice: &Slice<K>,
     ends: Option<(Incident, Incident)>,
     up_open: bool,
     down_open: bool,
@@ -396,15 +412,15 @@ pub(super) enum Landing {
 
 /// The first arc that a snap meets from `place` on its way to rest, among those that exist just
 /// after its time; `dir` is −1 downward, +1 upward. `skip` holds the arcs at the place itself.
-pub(super) fn snap(
-    slice: &Slice,
-    x: &Algebraic,
+pub(super) fn snap<K: Kernel>(
+    slice: &Slice<K>,
+    x: &K::Root,
     mut half_turn: i64,
-    t: &Time,
+    t: &K::Time,
     dir: i32,
     skip: &[Incident],
 ) -> Landing {
-    let zero = Algebraic::from(Rat::zero());
+    let zero = K::Root::of(K::Num::zero());
     let toward = if dir < 0 {
         Ordering::Less
     } else {
@@ -458,7 +474,7 @@ pub(super) fn snap(
 }
 
 /// The arcs that coincide with `arc` just after t, itself included, by contact.
-pub(super) fn group(slice: &Slice, arc: ArcId, t: &Time) -> Vec<ArcId> {
+pub(super) fn group<K: Kernel>(slice: &Slice<K>, arc: ArcId, t: &K::Time) -> Vec<ArcId> {
     let mut ids: Vec<ArcId> = slice
         .arcs_in(slice.arc(arc).chart)
         .iter()
@@ -475,7 +491,7 @@ pub(super) fn group(slice: &Slice, arc: ArcId, t: &Time) -> Vec<ArcId> {
 }
 
 /// The contacts of some arcs, sorted and without repetition.
-pub(super) fn contacts(slice: &Slice, arcs: &[ArcId]) -> Vec<Contact> {
+pub(super) fn contacts<K: Kernel>(slice: &Slice<K>, arcs: &[ArcId]) -> Vec<Contact> {
     let mut c: Vec<Contact> = arcs.iter().map(|&a| slice.arc(a).contact).collect();
     c.sort();
     c.dedup();
@@ -483,11 +499,12 @@ pub(super) fn contacts(slice: &Slice, arcs: &[ArcId]) -> Vec<Contact> {
 }
 
 /// Whether a graph arc's curve has a vertical tangency at x.
-pub(super) fn is_tangency(slice: &Slice, arc: ArcId, x: &Algebraic) -> bool {
+pub(super) fn is_tangency<K: Kernel>(slice: &Slice<K>, arc: ArcId, x: &K::Root) -> bool {
     let a = slice.arc(arc);
     if !matches!(a.shape, Shape::Graph { .. }) {
         return false;
     }
     let (p, q) = slice.curve(a.curve).reduced(a.chart);
-    x.sign_of(&(p.derivative() * q - p * q.derivative())) == 0
+    let bend = p.derivative().times(q).minus(&p.times(&q.derivative()));
+    x.sign_of(&bend) == 0
 }

@@ -23,13 +23,15 @@
 //! holds what comes out.
 
 pub mod friction;
+pub mod ledger;
 mod local;
 pub mod phase;
 pub mod plan;
 pub mod root;
 pub mod trajectory;
 
-pub use plan::{Options, PlanError, simulate};
+pub use ledger::Ledger;
+pub use plan::{Arithmetic, Options, PlanError, simulate};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
     Trajectory,

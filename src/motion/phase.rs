@@ -11,24 +11,27 @@ use super::local::{
 use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
 use crate::contact::{Chart, Contact};
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
-use crate::number::{Algebraic, Rat};
-use crate::slice::{ArcId, Point, Shape, Slice, Time};
+use crate::kernel::{Filtered, Instant, Kernel, Position};
+use crate::number::{Rat, Scalar};
+use crate::slice::{ArcId, Point, Shape, Slice};
 
 /// What one pawl's run through a phase yields.
 #[derive(Debug)]
-pub struct Run {
+pub struct Run<K: Kernel = Filtered> {
     /// Events, in order of time and kind.
-    pub events: Vec<Event>,
+    pub events: Vec<Event<K>>,
     /// Segments, in order of time.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<Segment<K>>,
     /// How and when it ended before the phase did.
-    pub end: Option<(OutcomeKind, Time, Vec<Branch>)>,
+    pub end: Option<(OutcomeKind, K::Time, Vec<Branch>)>,
     /// Orientation at the end.
-    pub angle: Angle,
+    pub angle: Angle<K>,
     /// Orientation at the probe, or at the end where that is earlier.
-    pub probed: Angle,
+    pub probed: Angle<K>,
     /// Contacts that touch at the end.
     pub touching: Vec<Contact>,
+    /// Instants at which more arcs met than in general position.
+    pub degenerate: u64,
 }
 
 /// What a pawl's run needs besides the slice.
@@ -49,30 +52,40 @@ pub struct Setting<'a> {
     pub stop: &'a dyn Fn() -> bool,
 }
 
-struct Runner<'a> {
-    slice: &'a Slice,
+struct Runner<'a, K: Kernel> {
+    slice: &'a Slice<K>,
     set: &'a Setting<'a>,
-    end: Time,
-    zero: Algebraic,
+    /// Angular stops, μ and the probe in the kernel's numbers.
+    limits: Option<(K::Num, K::Num)>,
+    friction: Option<K::Num>,
+    probe_at: Option<K::Num>,
+    end: K::Time,
+    zero: K::Root,
     state: State,
     /// The last instant that was looked at.
-    clock: Time,
+    clock: K::Time,
     /// When the current segment began, and the turns then.
-    segment_from: Time,
+    segment_from: K::Time,
     segment_winding: i64,
     /// Arcs that hold along the current segment, by contact; empty at rest.
     held: Vec<ArcId>,
-    events: Vec<Event>,
-    segments: Vec<Segment>,
-    probed: Option<Angle>,
+    events: Vec<Event<K>>,
+    segments: Vec<Segment<K>>,
+    probed: Option<Angle<K>>,
     /// Where rest is touched: (time, arc), ascending.
-    rest_hits: Vec<Time>,
+    rest_hits: Vec<K::Time>,
+    degenerate: u64,
 }
 
 /// Runs a pawl from `start` through the phase of the slice. `touching` are the contacts already
 /// known (the end of the phase before), which are not reported anew.
-pub fn run(slice: &Slice, set: &Setting<'_>, start: &Angle, touching: &[Contact]) -> Run {
-    let zero = Algebraic::from(Rat::zero());
+pub fn run<K: Kernel>(
+    slice: &Slice<K>,
+    set: &Setting<'_>,
+    start: &Angle<K>,
+    touching: &[Contact],
+) -> Run<K> {
+    let zero = K::Root::of(K::Num::zero());
     let mut rest_hits = Vec::new();
     for &id in slice.arcs_in(Chart::Rest) {
         let arc = slice.arc(id);
@@ -85,11 +98,15 @@ pub fn run(slice: &Slice, set: &Setting<'_>, start: &Angle, touching: &[Contact]
     }
     rest_hits.sort();
     rest_hits.dedup();
-    let origin = Time::from(Rat::zero());
+    let num = <K::Num as Scalar>::from_rat;
+    let origin = K::Time::of(K::Num::zero());
     let mut r = Runner {
         slice,
         set,
-        end: Time::from(slice.frame.duration.clone()),
+        limits: set.limits.map(|(lo, hi)| (num(lo), num(hi))),
+        friction: set.friction.map(num),
+        probe_at: set.probe.map(num),
+        end: K::Time::of(slice.frame.duration.clone()),
         zero,
         state: State::Rest,
         clock: origin.clone(),
@@ -100,24 +117,25 @@ pub fn run(slice: &Slice, set: &Setting<'_>, start: &Angle, touching: &[Contact]
         segments: Vec::new(),
         probed: None,
         rest_hits,
+        degenerate: 0,
     };
     let stop = r.go(start, touching);
     r.finish(stop)
 }
 
 /// How a run stopped: at the phase's end (with the orientation), or before it.
-enum Stop {
-    PhaseEnd(Angle),
+enum Stop<K: Kernel> {
+    PhaseEnd(Angle<K>),
     Early {
         kind: OutcomeKind,
-        at: Time,
-        angle: Angle,
+        at: K::Time,
+        angle: Angle<K>,
         branches: Vec<Branch>,
     },
 }
 
-impl Runner<'_> {
-    fn go(&mut self, start: &Angle, touching: &[Contact]) -> Stop {
+impl<K: Kernel> Runner<'_, K> {
+    fn go(&mut self, start: &Angle<K>, touching: &[Contact]) -> Stop<K> {
         let origin = self.clock.clone();
         if self.end <= origin {
             return Stop::PhaseEnd(start.clone());
@@ -159,7 +177,13 @@ impl Runner<'_> {
     // ── the start of a phase ────────────────────────────────────────────────────────────────
 
     /// What follows at the first instant: the right limit, from nothing but the geometry.
-    fn begin(&self, start: &Angle, z: &Point, inc: &[Incident], touching: &[Contact]) -> Next {
+    fn begin(
+        &self,
+        start: &Angle<K>,
+        z: &Point<K>,
+        inc: &[Incident],
+        touching: &[Contact],
+    ) -> Next {
         let slice = self.slice;
         let side = start.side();
         let toward = Next::Snap(-side);
@@ -228,7 +252,7 @@ impl Runner<'_> {
 
     /// Whether the side of an arc is free just after `from`: by one polygon test at a rational
     /// point beside it, before anything meets the arc.
-    fn free_beside(&self, id: ArcId, above: bool, from: &Time) -> bool {
+    fn free_beside(&self, id: ArcId, above: bool, from: &K::Time) -> bool {
         let slice = self.slice;
         let arc = slice.arc(id);
         let mut until = self.within_phase(from, arc.end().t.clone());
@@ -239,7 +263,7 @@ impl Runner<'_> {
                 until = p.t;
             }
         }
-        let t = Time::between(from, &until);
+        let t = K::Time::between(from, &until);
         match slice.height_at(arc, &t) {
             Some(x) => self.free_near(arc.chart, &x, &t, above),
             None => false,
@@ -247,7 +271,7 @@ impl Runner<'_> {
     }
 
     /// `until`, but not past the phase's end: what can only be met after it was never made.
-    fn within_phase(&self, from: &Time, until: Time) -> Time {
+    fn within_phase(&self, from: &K::Time, until: K::Time) -> K::Time {
         if *from < self.end && self.end < until {
             self.end.clone()
         } else {
@@ -257,23 +281,23 @@ impl Runner<'_> {
 
     /// What must hold just after an instant, by the polygons alone: the state's own interval is
     /// free beside it, and at rest nothing penetrates. Asked by debug assertions only.
-    fn holds_after(&self, at: &Time) -> bool {
+    fn holds_after(&self, at: &K::Time) -> bool {
         match self.state {
             State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
             State::Rest => {
                 let next = self.rest_hits.iter().find(|t| *t > at);
-                let soon = self.within_phase(at, at.shift(&Rat::one()));
-                let t = Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
-                self.free_at(Chart::Rest, &Rat::zero(), &t)
+                let soon = self.within_phase(at, at.shift(&K::Num::one()));
+                let t = K::Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
+                self.free_at(Chart::Rest, &K::Num::zero(), &t)
             }
         }
     }
 
     /// Whether the configuration is free just after the start along the horizontal through z,
     /// where no arc leaves z to the right.
-    fn free_along(&self, z: &Point) -> bool {
+    fn free_along(&self, z: &Point<K>) -> bool {
         let slice = self.slice;
-        let mut until = self.within_phase(&self.clock, Time::from(Rat::one()));
+        let mut until = self.within_phase(&self.clock, K::Time::of(K::Num::one()));
         for &b in slice.arcs_in(z.chart) {
             let arc = slice.arc(b);
             if !arc.spans_x(&z.x) {
@@ -287,18 +311,18 @@ impl Runner<'_> {
                 until = t;
             }
         }
-        self.free_near(z.chart, &z.x, &Time::between(&self.clock, &until), true)
+        self.free_near(z.chart, &z.x, &K::Time::between(&self.clock, &until), true)
     }
 
     /// The polygon test at time t and an orientation just above (or below) x, nearer than any
     /// other arc at that time.
-    fn free_near(&self, chart: Chart, x: &Algebraic, t: &Rat, above: bool) -> bool {
+    fn free_near(&self, chart: Chart, x: &K::Root, t: &K::Num, above: bool) -> bool {
         let slice = self.slice;
-        let seam = Algebraic::from(Rat::from(if above { 1 } else { -1 }));
+        let seam = K::Root::of(K::side(above));
         let mut bound = seam;
         for &b in slice.arcs_in(chart) {
             let arc = slice.arc(b);
-            let when = Time::from(t.clone());
+            let when = K::Time::of(t.clone());
             if arc.start().t > when || arc.end().t < when {
                 continue;
             }
@@ -311,17 +335,18 @@ impl Runner<'_> {
         }
         if bound == *x {
             // At the seam itself: look from the other chart.
-            let x = Algebraic::from(Rat::from(if above { -1 } else { 1 }));
+            let x = K::Root::of(K::side(!above));
             return self.free_near(chart.other(), &x, t, above);
         }
-        let at = Algebraic::between(x, &bound);
-        if let Some((lo, hi)) = self.set.limits {
-            let angle = Angle {
+        let at = K::Root::between(x, &bound);
+        if let Some((lo, hi)) = &self.limits {
+            let angle: Angle<K> = Angle {
                 half_turn: chart.index() as i64,
-                x: Algebraic::from(at.clone()),
+                x: K::Root::of(at.clone()),
             };
             // Stops leave less than a turn, so any lift that lies between them will do.
-            let (lo, hi) = (Angle::from_tan_half(lo), Angle::from_tan_half(hi));
+            let (lo, hi): (Angle<K>, Angle<K>) =
+                (Angle::from_tan_half(lo), Angle::from_tan_half(hi));
             let inside = [0, -2].iter().any(|turn| {
                 let a = Angle {
                     half_turn: angle.half_turn + turn,
@@ -337,9 +362,12 @@ impl Runner<'_> {
     }
 
     /// Whether the pawl's interior is clear of every obstacle's at a rational time and position.
-    fn free_at(&self, chart: Chart, at: &Rat, t: &Rat) -> bool {
-        let slice = self.slice;
-        let p = &slice.frame.p0 + &slice.frame.v.scale(t);
+    fn free_at(&self, chart: Chart, at: &K::Num, t: &K::Num) -> bool {
+        // Exact for the numbers given, also where those are doubles.
+        let (at, t) = (&at.to_rat(), &t.to_rat());
+        let exact = |p: &Vec2<K::Num>| Vec2::new(p.x.to_rat(), p.y.to_rat());
+        let frame = &self.slice.frame;
+        let p = &exact(&frame.p0) + &exact(&frame.v).scale(t);
         let ring = self.set.shape.rings()[0]
             .iter()
             .map(|a| {
@@ -363,7 +391,7 @@ impl Runner<'_> {
     // ── steps ───────────────────────────────────────────────────────────────────────────────
 
     /// From the current state to the next time at which something touches it.
-    fn step(&mut self, last: &mut Angle) -> Option<Stop> {
+    fn step(&mut self, last: &mut Angle<K>) -> Option<Stop<K>> {
         let (z, half_turn) = match self.state {
             State::Rest => {
                 let hit = self
@@ -385,7 +413,7 @@ impl Runner<'_> {
             }
             State::On { arc, half_turn, .. } => {
                 let next = self.next_on(arc, half_turn);
-                if let Some(mu) = self.set.friction
+                if let Some(mu) = &self.friction
                     && let Some(t) = stick_time(self.slice, arc, &self.clock, mu)
                     && t < self.end
                     && next.as_ref().is_none_or(|z| t < z.t)
@@ -416,6 +444,7 @@ impl Runner<'_> {
         };
         let place = Place::new(z, half_turn);
         let inc = incident(self.slice, &place);
+        self.degenerate += u64::from(inc.len() > 2);
         let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &at);
         let next = resolve(self.slice, &place, &inc, self.state, at_rest, &free);
         self.enter(
@@ -431,29 +460,29 @@ impl Runner<'_> {
     }
 
     /// Notes the orientation at the probe if the state passes it before `next`.
-    fn probe(&mut self, next: Option<&Time>) {
-        let Some(t) = self.set.probe.filter(|_| self.probed.is_none()) else {
+    fn probe(&mut self, next: Option<&K::Time>) {
+        let Some(t) = self.probe_at.as_ref().filter(|_| self.probed.is_none()) else {
             return;
         };
-        if next.is_some_and(|n| n.cmp_rat(t).is_le()) {
+        if next.is_some_and(|n| n.cmp_num(t).is_le()) {
             return;
         }
         self.probed = Some(match self.state {
             State::Rest => Angle::rest(),
             State::On { arc, half_turn, .. } => Angle {
                 half_turn,
-                x: self.position(arc, &Time::from(t.clone())),
+                x: self.position(arc, &K::Time::of(t.clone())),
             },
         });
     }
 
     /// The next point at which anything meets the arc that the state follows.
-    fn next_on(&self, id: ArcId, half_turn: i64) -> Option<Point> {
+    fn next_on(&self, id: ArcId, half_turn: i64) -> Option<Point<K>> {
         let slice = self.slice;
         let arc = slice.arc(id);
         let mut until = self.end.clone();
-        let mut best: Option<Point> = None;
-        let mut take = |p: Point, until: &mut Time| {
+        let mut best: Option<Point<K>> = None;
+        let mut take = |p: Point<K>, until: &mut K::Time| {
             if p.t > self.clock && p.t <= *until && best.as_ref().is_none_or(|b| p.t < b.t) {
                 *until = p.t.clone();
                 best = Some(p);
@@ -490,12 +519,12 @@ impl Runner<'_> {
                 take(p, &mut until);
             }
         }
-        if arc.shape == Shape::Level && arc.lo.x.cmp_rat(&Rat::from(-1)).is_eq() {
+        if arc.shape == Shape::Level && arc.lo.x.cmp_num(&K::side(false)).is_eq() {
             // On the seam: what comes from below lives in the other chart.
-            let one = Rat::one();
+            let one = K::Num::one();
             for &b in slice.arcs_in(arc.chart.other()) {
                 let other = slice.arc(b);
-                if other.is_barrier() && other.hi.x.cmp_rat(&one).is_eq() {
+                if other.is_barrier() && other.hi.x.cmp_num(&one).is_eq() {
                     let t = other.hi.t.clone();
                     if t <= arc.hi.t {
                         let x = arc.lo.x.clone();
@@ -516,7 +545,7 @@ impl Runner<'_> {
     }
 
     /// The position of an arc at an instant within it.
-    fn position(&self, id: ArcId, t: &Time) -> Algebraic {
+    fn position(&self, id: ArcId, t: &K::Time) -> K::Root {
         let slice = self.slice;
         let arc = slice.arc(id);
         if arc.shape == Shape::Level {
@@ -527,36 +556,29 @@ impl Runner<'_> {
                 return e.x.clone();
             }
         }
-        let exact = t.exact();
-        if let Some(r) = exact.to_rat()
+        if let Some(r) = t.decided()
             && let Some(x) = slice.height_at(arc, &r)
         {
             return x;
         }
         let (p, q) = slice.curve(arc.curve).reduced(arc.chart);
-        exact.root_over(p, q, &mut |bits| {
-            let (lo, hi) = exact.enclosure(bits);
+        t.height(p, q, &mut |t| {
             // Outside its span the arc is bounded by its own ends.
-            let at = |t: &Rat| {
-                if arc.start().t.cmp_rat(t).is_ge() {
-                    arc.start().x.clone()
-                } else if arc.end().t.cmp_rat(t).is_le() {
-                    arc.end().x.clone()
-                } else {
-                    slice
-                        .height_at(arc, t)
-                        .unwrap_or_else(|| arc.start().x.clone())
-                }
-            };
-            let (a, b) = (at(&lo), at(&hi));
-            let (a, b) = if a <= b { (a, b) } else { (b, a) };
-            (a.enclosure(bits).0, b.enclosure(bits).1)
+            if arc.start().t.cmp_num(t).is_ge() {
+                arc.start().x.clone()
+            } else if arc.end().t.cmp_num(t).is_le() {
+                arc.end().x.clone()
+            } else {
+                slice
+                    .height_at(arc, t)
+                    .unwrap_or_else(|| arc.start().x.clone())
+            }
         })
     }
 
     // ── what happens at an instant ──────────────────────────────────────────────────────────
 
-    fn event(&mut self, kind: EventKind, at: &Time, angle: &Angle, contacts: Vec<Contact>) {
+    fn event(&mut self, kind: EventKind, at: &K::Time, angle: &Angle<K>, contacts: Vec<Contact>) {
         self.events.push(Event {
             kind,
             time: at.clone(),
@@ -569,7 +591,13 @@ impl Runner<'_> {
     }
 
     /// Carries out what follows at an instant: reports it and changes the state.
-    fn enter(&mut self, next: Next, angle: Angle, at: &Time, entry: &Entry<'_>) -> Option<Stop> {
+    fn enter(
+        &mut self,
+        next: Next,
+        angle: Angle<K>,
+        at: &K::Time,
+        entry: &Entry<'_>,
+    ) -> Option<Stop<K>> {
         let last = *at == self.end;
         let stop = match next {
             Next::Rest => {
@@ -605,7 +633,7 @@ impl Runner<'_> {
         };
         self.clock = at.clone();
         debug_assert!(
-            stop.is_some() || last || self.holds_after(at),
+            !K::CERTIFIED || stop.is_some() || last || self.holds_after(at),
             "the state's interval is free"
         );
         match stop {
@@ -614,7 +642,7 @@ impl Runner<'_> {
         }
     }
 
-    fn come_to_rest(&mut self, angle: &Angle, at: &Time, entry: &Entry<'_>) {
+    fn come_to_rest(&mut self, angle: &Angle<K>, at: &K::Time, entry: &Entry<'_>) {
         if self.held.is_empty() {
             // A touch without effect, where nothing was touching before or is after.
             let lying = |i: &Incident| self.slice.arc(i.arc).shape == Shape::Level;
@@ -636,10 +664,10 @@ impl Runner<'_> {
         arc: ArcId,
         half_turn: i64,
         lower: bool,
-        angle: &Angle,
-        at: &Time,
+        angle: &Angle<K>,
+        at: &K::Time,
         entry: &Entry<'_>,
-    ) -> Option<Stop> {
+    ) -> Option<Stop<K>> {
         let slice = self.slice;
         let arcs = group(slice, arc, at);
         let first = arcs.first().copied().unwrap_or(arc);
@@ -685,8 +713,8 @@ impl Runner<'_> {
     }
 
     /// Sticks at once where friction holds the contact that the state has begun to follow.
-    fn hold(&mut self, arc: ArcId, at: &Time, angle: &Angle) -> Option<Stop> {
-        let mu = self.set.friction?;
+    fn hold(&mut self, arc: ArcId, at: &K::Time, angle: &Angle<K>) -> Option<Stop<K>> {
+        let mu = self.friction.as_ref()?;
         let t = stick_time(self.slice, arc, at, mu)?;
         if t != *at {
             return None;
@@ -702,7 +730,7 @@ impl Runner<'_> {
     }
 
     /// Sticks on the way along an arc.
-    fn stick(&mut self, arc: ArcId, half_turn: i64, at: Time) -> Stop {
+    fn stick(&mut self, arc: ArcId, half_turn: i64, at: K::Time) -> Stop<K> {
         let angle = Angle {
             half_turn,
             x: self.position(arc, &at),
@@ -716,10 +744,10 @@ impl Runner<'_> {
         &mut self,
         kind: OutcomeKind,
         event: EventKind,
-        at: &Time,
-        angle: Angle,
+        at: &K::Time,
+        angle: Angle<K>,
         touching: Vec<Contact>,
-    ) -> Stop {
+    ) -> Stop<K> {
         self.cut(at, &angle, &angle);
         self.event(event, at, &angle, touching);
         Stop::Early {
@@ -731,7 +759,13 @@ impl Runner<'_> {
     }
 
     /// The snap: pure rotation towards rest, up to the first arc in the way (DP §8.1).
-    fn snap(&mut self, dir: i32, angle: &Angle, at: &Time, entry: &Entry<'_>) -> Option<Stop> {
+    fn snap(
+        &mut self,
+        dir: i32,
+        angle: &Angle<K>,
+        at: &K::Time,
+        entry: &Entry<'_>,
+    ) -> Option<Stop<K>> {
         let slice = self.slice;
         let released = contacts(slice, &self.held);
         let landing = snap(slice, &angle.x, angle.half_turn, at, dir, entry.inc);
@@ -781,18 +815,18 @@ impl Runner<'_> {
         &mut self,
         up: ArcId,
         down: ArcId,
-        angle: &Angle,
-        at: &Time,
+        angle: &Angle<K>,
+        at: &K::Time,
         last: bool,
-    ) -> Option<Stop> {
+    ) -> Option<Stop<K>> {
         let slice = self.slice;
         let mut branches = Vec::new();
         for (direction, arc) in [(1, up), (-1, down)] {
             let arcs = group(slice, arc, at);
             let first = arcs.first().copied().unwrap_or(arc);
             let sticks = self
-                .set
                 .friction
+                .as_ref()
                 .and_then(|mu| stick_time(slice, first, at, mu))
                 .is_some_and(|t| t == *at);
             branches.push(Branch {
@@ -826,7 +860,7 @@ impl Runner<'_> {
     }
 
     /// Reports contacts made at a phase's last instant.
-    fn touch(&mut self, at: &Time, angle: &Angle, mut fresh: Vec<Contact>) {
+    fn touch(&mut self, at: &K::Time, angle: &Angle<K>, mut fresh: Vec<Contact>) {
         let old = contacts(self.slice, &self.held);
         fresh.retain(|c| !old.contains(c));
         if !fresh.is_empty() {
@@ -852,7 +886,7 @@ impl Runner<'_> {
     // ── segments and the end ────────────────────────────────────────────────────────────────
 
     /// Ends the current segment; the next one begins with the orientation `after`.
-    fn cut(&mut self, at: &Time, before: &Angle, after: &Angle) {
+    fn cut(&mut self, at: &K::Time, before: &Angle<K>, after: &Angle<K>) {
         if *at > self.segment_from {
             let sliding = self.held.first().map(|&first| {
                 let arc = self.slice.arc(first);
@@ -878,13 +912,13 @@ impl Runner<'_> {
         self.segment_winding = after.winding();
     }
 
-    fn complete(&mut self, angle: Angle) -> Stop {
+    fn complete(&mut self, angle: Angle<K>) -> Stop<K> {
         let end = self.end.clone();
         self.cut(&end, &angle, &angle);
         Stop::PhaseEnd(angle)
     }
 
-    fn finish(mut self, stop: Stop) -> Run {
+    fn finish(mut self, stop: Stop<K>) -> Run<K> {
         let (angle, end) = match stop {
             Stop::PhaseEnd(angle) => (angle, None),
             Stop::Early {
@@ -909,7 +943,7 @@ impl Runner<'_> {
         }
         // One kind at one instant is one event; kinds follow in the contract's order. Grouping is
         // stable in time, since events are made in order of time.
-        let mut events: Vec<Event> = Vec::new();
+        let mut events: Vec<Event<K>> = Vec::new();
         for e in std::mem::take(&mut self.events) {
             match events.last_mut() {
                 Some(l) if l.kind == e.kind && l.time == e.time && l.to.is_none() => {
@@ -928,6 +962,7 @@ impl Runner<'_> {
             angle,
             probed,
             touching,
+            degenerate: self.degenerate,
         }
     }
 }

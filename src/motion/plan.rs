@@ -1,5 +1,6 @@
 //! Plans: phases one after the other, all pawls and the root together.
 
+use super::ledger::{Ledger, PhaseCost};
 use super::phase::{Run, Setting, run};
 use super::root::{first_collision, obstacle_polygon};
 use super::trajectory::{
@@ -8,9 +9,13 @@ use super::trajectory::{
 };
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
-use crate::number::Rat;
+use crate::kernel::{
+    Exact, Filtered, Float, FloatOptions, Instant as _, Kernel, Position, with_float,
+};
+use crate::number::filter::{counts, reset_bits, with_filter};
+use crate::number::{Rat, Scalar};
 use crate::scene::{Motion, Scene};
-use crate::slice::{Slice, Time};
+use crate::slice::Slice;
 use std::time::Instant;
 
 /// How a simulation is to run.
@@ -20,6 +25,31 @@ pub struct Options<'a> {
     pub deadline: Option<Instant>,
     /// Told before each pawl's run through each phase.
     pub progress: Option<&'a dyn Fn(Progress)>,
+    /// Which numbers decide.
+    pub arithmetic: Arithmetic,
+}
+
+/// Which numbers decide.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Arithmetic {
+    /// Certified double enclosures first, exact numbers where they cannot tell.
+    #[default]
+    Filtered,
+    /// Exact numbers only: the reference, with the same answers.
+    Exact,
+    /// Doubles, with zeros identified; fast, and may be wrong.
+    F64(FloatOptions),
+}
+
+impl Arithmetic {
+    /// The contract's word for it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Arithmetic::Filtered => "filtered",
+            Arithmetic::Exact => "exact",
+            Arithmetic::F64(_) => "f64",
+        }
+    }
 }
 
 /// How far a simulation has come.
@@ -67,25 +97,47 @@ impl std::fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-/// Simulates a scene exactly (DP Def. 2.1) by the simple algorithm.
+/// Simulates a scene (DP Def. 2.1) by the simple algorithm, in the arithmetic asked for.
 ///
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, PlanError> {
-    let obstacles: Vec<ObstacleShape> = scene.obstacles.iter().map(ObstacleShape::new).collect();
+    match &options.arithmetic {
+        Arithmetic::Filtered => simulate_with::<Filtered>(scene, options),
+        Arithmetic::Exact => {
+            with_filter(false, || simulate_with::<Exact>(scene, options)).map(Trajectory::published)
+        }
+        Arithmetic::F64(float) => {
+            with_float(float, || simulate_with::<Float>(scene, options)).map(Trajectory::published)
+        }
+    }
+}
+
+fn simulate_with<K: Kernel>(
+    scene: &Scene,
+    options: &Options<'_>,
+) -> Result<Trajectory<K>, PlanError> {
+    let num = <K::Num as Scalar>::from_rat;
+    reset_bits();
+    let before_all = counts();
+    let mut ledger = Ledger::default();
+    let obstacles: Vec<ObstacleShape<K::Num>> =
+        scene.obstacles.iter().map(ObstacleShape::new).collect();
     let fixed: Vec<Polygon> = scene.obstacles.iter().map(obstacle_polygon).collect();
-    let shapes: Vec<PawlShape> = scene.pawls.iter().map(PawlShape::new).collect();
-    let turning: Vec<Polygon> = shapes
-        .iter()
-        .map(|s| Polygon::new(s.ring.vertices.clone(), Vec::new()))
-        .collect();
-    let mut angles: Vec<Angle> = scene
+    let shapes: Vec<PawlShape<K::Num>> = scene.pawls.iter().map(PawlShape::new).collect();
+    let turning: Vec<Polygon> = scene
         .pawls
         .iter()
-        .map(|p| Angle::from_tan_half(&p.start))
+        .map(|p| p.vertices.iter().map(|v| v - &p.hinge).collect())
+        .map(|ring| Polygon::new(ring, Vec::new()))
+        .collect();
+    let mut angles: Vec<Angle<K>> = scene
+        .pawls
+        .iter()
+        .map(|p| Angle::from_tan_half(&num(&p.start)))
         .collect();
     let mut touching: Vec<Vec<Contact>> = vec![Vec::new(); scene.pawls.len()];
-    let mut pawls: Vec<PawlTrace> = scene
+    let mut pawls: Vec<PawlTrace<K>> = scene
         .pawls
         .iter()
         .map(|p| PawlTrace {
@@ -94,28 +146,37 @@ pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, Plan
             segments: Vec::new(),
         })
         .collect();
-    let mut phases: Vec<Phase> = Vec::new();
+    let mut phases: Vec<Phase<K>> = Vec::new();
     let mut offset = Vec2::default();
     let mut clock = Rat::zero();
     let mut before: Option<(Vec2, Rat)> = None;
     let stop = || options.deadline.is_some_and(|d| Instant::now() >= d);
     for (index, motion) in scene.motions.iter().enumerate() {
         let plan = schedule(scene, index, motion, &offset, before.as_ref())?;
-        let end = Time::from(plan.duration.clone());
+        K::begin();
+        for angle in &mut angles {
+            angle.x = angle.x.renew();
+        }
+        let mut cost = PhaseCost::default();
+        let end = K::Time::of(num(&plan.duration));
         let mut phase = Phase {
             from: clock.clone(),
             to: end.clone(),
             offset: offset.clone(),
             velocity: plan.velocity.clone(),
         };
-        let mut runs: Vec<Run> = Vec::with_capacity(scene.pawls.len());
+        let mut runs: Vec<Run<K>> = Vec::with_capacity(scene.pawls.len());
         for (i, pawl) in scene.pawls.iter().enumerate() {
+            let clock = Instant::now();
             let frame = Frame {
-                p0: &pawl.hinge + &offset,
-                v: plan.velocity.clone(),
-                duration: plan.duration.clone(),
+                p0: Vec2::from_exact(&(&pawl.hinge + &offset)),
+                v: Vec2::from_exact(&plan.velocity),
+                duration: num(&plan.duration),
             };
-            let slice = Slice::new(frame, &shapes[i], &obstacles, pawl.limits.as_ref());
+            let limits = pawl.limits.as_ref().map(|(lo, hi)| (num(lo), num(hi)));
+            let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
+            cost.build += clock.elapsed().as_secs_f64();
+            cost.arcs += slice.arcs().len() as u64;
             if let Some(report) = options.progress {
                 let phases = scene.motions.len();
                 report(Progress {
@@ -134,17 +195,24 @@ pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, Plan
                 probe: plan.collision.as_ref().map(|c| &c.0),
                 stop: &stop,
             };
+            let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
+            cost.run += clock.elapsed().as_secs_f64();
+        }
+        ledger.phases.push(cost);
+        ledger.degenerate_events += runs.iter().map(|r| r.degenerate).sum::<u64>();
+        if K::CERTIFIED {
+            ledger.counts = counts().since(&before_all);
         }
         // The first end of any kind ends the plan; at one instant the graver kind, then the first
         // pawl of the file.
-        let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
+        let mut ends: Vec<(K::Time, OutcomeKind, Option<usize>)> = runs
             .iter()
             .enumerate()
             .filter_map(|(i, r)| r.end.as_ref().map(|e| (e.1.clone(), e.0, Some(i))))
             .collect();
         if let Some((t, _)) = plan.collision.as_ref().filter(|_| !plan.until_collision) {
-            ends.push((Time::from(t.clone()), OutcomeKind::RootCollision, None));
+            ends.push((K::Time::of(num(t)), OutcomeKind::RootCollision, None));
         }
         ends.sort();
         let over = ends.into_iter().next();
@@ -174,6 +242,7 @@ pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, Plan
                 phases,
                 outcome,
                 pawls,
+                ledger,
             });
         }
         phases.push(phase);
@@ -196,7 +265,7 @@ pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, Plan
     let last = phases.len().saturating_sub(1);
     let time = phases
         .last()
-        .map_or(Time::from(Rat::zero()), |p| p.to.clone());
+        .map_or(K::Time::of(K::Num::zero()), |p| p.to.clone());
     let outcome = Outcome {
         kind: OutcomeKind::Completed,
         time,
@@ -208,6 +277,7 @@ pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, Plan
         phases,
         outcome,
         pawls,
+        ledger,
     })
 }
 
@@ -258,10 +328,10 @@ fn schedule(
 }
 
 /// Adds a run to a pawl's history, up to the instant at which the plan went over.
-fn append(
-    pawl: &mut PawlTrace,
-    run: Run,
-    cut: &Time,
+fn append<K: Kernel>(
+    pawl: &mut PawlTrace<K>,
+    run: Run<K>,
+    cut: &K::Time,
     plan: &Schedule,
     phase: usize,
     completed: bool,
@@ -294,7 +364,7 @@ fn append(
         root_contacts,
     };
     if let Some((t, contacts)) = &plan.collision
-        && cut.cmp_rat(t).is_eq()
+        && cut.cmp_num(&K::Num::from_rat(t)).is_eq()
     {
         pawl.events
             .push(event(EventKind::RootCollision, contacts.clone()));

@@ -2,39 +2,39 @@
 
 use crate::contact::{Chart, Contact};
 use crate::geometry::Vec2;
-use crate::number::{Algebraic, Int, Poly, Rat};
-use crate::slice::Time;
+use crate::kernel::{Filtered, Instant as _, Kernel, Polynomial, Position};
+use crate::number::{Rat, Scalar};
 use std::cmp::Ordering;
 
 /// An orientation on the covering line: θ = π·half_turn + 2·atan(x), |x| ≤ 1.
 #[derive(Clone, Debug)]
-pub struct Angle {
+pub struct Angle<K: Kernel = Filtered> {
     /// Which half-turn.
     pub half_turn: i64,
     /// Position in its chart.
-    pub x: Algebraic,
+    pub x: K::Root,
 }
 
-impl Angle {
+impl<K: Kernel> Angle<K> {
     /// θ = 0, where the spring rests.
-    pub fn rest() -> Angle {
+    pub fn rest() -> Angle<K> {
         Angle {
             half_turn: 0,
-            x: Algebraic::from(Rat::zero()),
+            x: K::Root::of(K::Num::zero()),
         }
     }
     /// The orientation with tan(θ/2) = u, −π < θ < π.
-    pub fn from_tan_half(u: &Rat) -> Angle {
-        let one = Rat::one();
+    pub fn from_tan_half(u: &K::Num) -> Angle<K> {
+        let one = K::Num::one();
         if u.abs() <= one {
             Angle {
                 half_turn: 0,
-                x: Algebraic::from(u.clone()),
+                x: K::Root::of(u.clone()),
             }
         } else {
             Angle {
                 half_turn: i64::from(u.sign()),
-                x: Algebraic::from(-u.recip()),
+                x: K::Root::of(one.negated().over(u)),
             }
         }
     }
@@ -51,16 +51,14 @@ impl Angle {
         }
     }
     /// tan(θ/2); None where it is infinite.
-    pub fn tan_half(&self) -> Option<Algebraic> {
+    pub fn tan_half(&self) -> Option<K::Root> {
         match self.chart() {
             Chart::Rest => Some(self.x.clone()),
             Chart::Back if self.x.sign() == 0 => None,
             Chart::Back => {
-                let minus_one = Poly::constant(-Int::one());
-                Some(
-                    self.x
-                        .ratio(&minus_one, &Poly::new(vec![Int::zero(), Int::one()])),
-                )
+                let (one, zero) = (K::Num::one(), K::Num::zero());
+                let minus_one = K::Poly::of(&[one.negated()]);
+                Some(self.x.ratio(&minus_one, &K::Poly::of(&[zero, one])))
             }
         }
     }
@@ -75,20 +73,20 @@ impl Angle {
     }
 }
 
-impl PartialEq for Angle {
-    fn eq(&self, o: &Angle) -> bool {
+impl<K: Kernel> PartialEq for Angle<K> {
+    fn eq(&self, o: &Angle<K>) -> bool {
         self.cmp(o).is_eq()
     }
 }
-impl Eq for Angle {}
-impl PartialOrd for Angle {
-    fn partial_cmp(&self, o: &Angle) -> Option<Ordering> {
+impl<K: Kernel> Eq for Angle<K> {}
+impl<K: Kernel> PartialOrd for Angle<K> {
+    fn partial_cmp(&self, o: &Angle<K>) -> Option<Ordering> {
         Some(self.cmp(o))
     }
 }
-/// Exact comparison along the covering line.
-impl Ord for Angle {
-    fn cmp(&self, o: &Angle) -> Ordering {
+/// Comparison along the covering line.
+impl<K: Kernel> Ord for Angle<K> {
+    fn cmp(&self, o: &Angle<K>) -> Ordering {
         if self.half_turn == o.half_turn {
             return self.x.cmp(&o.x);
         }
@@ -97,9 +95,10 @@ impl Ord for Angle {
         } else {
             (o, self, true)
         };
+        let one = K::Num::one();
         let seam = hi.half_turn - lo.half_turn == 1
-            && lo.x.cmp_rat(&Rat::one()).is_eq()
-            && hi.x.cmp_rat(&Rat::from(-1)).is_eq();
+            && lo.x.cmp_num(&one).is_eq()
+            && hi.x.cmp_num(&one.negated()).is_eq();
         match (seam, swap) {
             (true, _) => Ordering::Equal,
             (false, false) => Ordering::Less,
@@ -185,17 +184,17 @@ pub struct RootContact {
 
 /// Something that happened to one pawl.
 #[derive(Clone, Debug)]
-pub struct Event {
+pub struct Event<K: Kernel = Filtered> {
     /// What.
     pub kind: EventKind,
     /// When, counted from the start of the phase.
-    pub time: Time,
+    pub time: K::Time,
     /// In which phase.
     pub phase: usize,
     /// Orientation then.
-    pub angle: Angle,
+    pub angle: Angle<K>,
     /// Orientation after a snap.
-    pub to: Option<Angle>,
+    pub to: Option<Angle<K>>,
     /// Who touches whom.
     pub contacts: Vec<Contact>,
     /// Contacts of the root, for a root collision.
@@ -204,30 +203,30 @@ pub struct Event {
 
 /// A stretch of motion under one constraint, or under none.
 #[derive(Clone, Debug)]
-pub struct Segment {
+pub struct Segment<K: Kernel = Filtered> {
     /// In which phase.
     pub phase: usize,
     /// Begin, counted from the start of the phase.
-    pub from: Time,
+    pub from: K::Time,
     /// End, counted from the start of the phase.
-    pub to: Time,
+    pub to: K::Time,
     /// Whole turns at both ends.
     pub winding: [i64; 2],
     /// What holds it away from rest; None for a free segment.
-    pub sliding: Option<Sliding>,
+    pub sliding: Option<Sliding<K>>,
 }
 
 /// The constraint of a sliding segment.
 #[derive(Clone, Debug)]
-pub struct Sliding {
+pub struct Sliding<K: Kernel = Filtered> {
     /// The first contact that holds throughout.
     pub contact: Contact,
     /// The other ones.
     pub also: Vec<Contact>,
     /// P, constant first.
-    pub p: [Int; 3],
+    pub p: [K::Coef; 3],
     /// Q, constant first.
-    pub q: [Int; 3],
+    pub q: [K::Coef; 3],
     /// The sign of the radical in DP eq. 26.
     pub branch: i32,
 }
@@ -276,11 +275,11 @@ impl OutcomeKind {
 
 /// How, when, where and why the motion ended.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct Outcome<K: Kernel = Filtered> {
     /// How.
     pub kind: OutcomeKind,
     /// When, counted from the start of `phase`.
-    pub time: Time,
+    pub time: K::Time,
     /// In which phase.
     pub phase: usize,
     /// Which pawl ended it.
@@ -291,11 +290,11 @@ pub struct Outcome {
 
 /// One phase as it really ran.
 #[derive(Clone, Debug)]
-pub struct Phase {
+pub struct Phase<K: Kernel = Filtered> {
     /// Start, counted from the start of the plan.
     pub from: Rat,
     /// Planned end, or the end of the motion where it ended within the phase.
-    pub to: Time,
+    pub to: K::Time,
     /// The root's displacement at the start.
     pub offset: Vec2,
     /// Velocity.
@@ -304,22 +303,87 @@ pub struct Phase {
 
 /// One pawl's history.
 #[derive(Clone, Debug)]
-pub struct PawlTrace {
+pub struct PawlTrace<K: Kernel = Filtered> {
     /// Its name.
     pub name: String,
     /// In order of time, then of kind.
-    pub events: Vec<Event>,
+    pub events: Vec<Event<K>>,
     /// In order of time.
-    pub segments: Vec<Segment>,
+    pub segments: Vec<Segment<K>>,
 }
 
 /// The whole result.
 #[derive(Clone, Debug)]
-pub struct Trajectory {
+pub struct Trajectory<K: Kernel = Filtered> {
     /// The phases that ran.
-    pub phases: Vec<Phase>,
+    pub phases: Vec<Phase<K>>,
     /// The end.
-    pub outcome: Outcome,
+    pub outcome: Outcome<K>,
     /// One history a pawl, in file order.
-    pub pawls: Vec<PawlTrace>,
+    pub pawls: Vec<PawlTrace<K>>,
+    /// What it took.
+    pub ledger: super::ledger::Ledger,
+}
+
+// ── results for outsiders ───────────────────────────────────────────────────────────────────
+
+impl<K: Kernel> Angle<K> {
+    fn published(self) -> Angle {
+        Angle {
+            half_turn: self.half_turn,
+            x: self.x.publish(),
+        }
+    }
+}
+
+impl<K: Kernel> Trajectory<K> {
+    /// The same in exact numbers: those that the kernel's own stand for.
+    pub fn published(self) -> Trajectory {
+        let phase = |p: Phase<K>| Phase {
+            from: p.from,
+            to: p.to.publish(),
+            offset: p.offset,
+            velocity: p.velocity,
+        };
+        let event = |e: Event<K>| Event {
+            kind: e.kind,
+            time: e.time.publish(),
+            phase: e.phase,
+            angle: e.angle.published(),
+            to: e.to.map(Angle::published),
+            contacts: e.contacts,
+            root_contacts: e.root_contacts,
+        };
+        let sliding = |s: Sliding<K>| Sliding {
+            contact: s.contact,
+            also: s.also,
+            p: s.p.map(|c| K::publish(&c)),
+            q: s.q.map(|c| K::publish(&c)),
+            branch: s.branch,
+        };
+        let segment = |s: Segment<K>| Segment {
+            phase: s.phase,
+            from: s.from.publish(),
+            to: s.to.publish(),
+            winding: s.winding,
+            sliding: s.sliding.map(sliding),
+        };
+        let trace = |p: PawlTrace<K>| PawlTrace {
+            name: p.name,
+            events: p.events.into_iter().map(event).collect(),
+            segments: p.segments.into_iter().map(segment).collect(),
+        };
+        Trajectory {
+            phases: self.phases.into_iter().map(phase).collect(),
+            outcome: Outcome {
+                kind: self.outcome.kind,
+                time: self.outcome.time.publish(),
+                phase: self.outcome.phase,
+                pawl: self.outcome.pawl,
+                branches: self.outcome.branches,
+            },
+            pawls: self.pawls.into_iter().map(trace).collect(),
+            ledger: self.ledger,
+        }
+    }
 }

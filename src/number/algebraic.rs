@@ -7,6 +7,7 @@
 //! which few questions need: it is made when one does. Nothing else is kept of how a number came about, so
 //! a value made by a long computation costs no more than one read from a file.
 
+use super::filter::{self, Stage};
 use super::isolate::Isolated;
 use super::refine::{Cell, Refiner, Span};
 use super::root::{Root, grid, linear, scale_of, value_on_cell};
@@ -86,6 +87,23 @@ impl Algebraic {
             Root::enclosed(p, y, -1).into(),
         ]
     }
+    /// Whether both are handles of one number (no arithmetic; false proves nothing).
+    pub fn same_handle(&self, o: &Algebraic) -> bool {
+        match (&self.0, &o.0) {
+            (Rational(a), Rational(b)) => Arc::ptr_eq(a, b),
+            (RootOf(a), RootOf(b)) => Arc::ptr_eq(a, b),
+            (QuotientOf(a), QuotientOf(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+    /// Counts the question where both are handles of one number.
+    fn named_alike(&self, o: &Algebraic) -> bool {
+        let same = self.same_handle(o);
+        if same {
+            filter::settled(Stage::Name);
+        }
+        same
+    }
     /// The same number as a rational or a root.
     fn settled(&self) -> &Algebraic {
         match &self.0 {
@@ -113,6 +131,7 @@ impl Algebraic {
     /// may be up to 2^-36 of its size wide.)
     pub fn interval(&self) -> Interval {
         match &self.0 {
+            _ if !filter::on() => Interval::all(),
             Rational(k) => k.interval,
             RootOf(r) => r.enclosure(),
             // The same answer whether or not the quotient has been resolved since.
@@ -151,10 +170,15 @@ impl Algebraic {
     /// -1, 0, 1.
     pub fn sign(&self) -> i32 {
         if let Some(s) = self.interval().sign() {
+            filter::settled(Stage::Double);
             return s;
         }
         match &self.0 {
-            Rational(k) => k.value.sign(),
+            Rational(k) => {
+                let s = k.value.sign();
+                filter::settled_exactly(s == 0, k.value.bits());
+                s
+            }
             QuotientOf(q) => q.root.sign_of(&q.num) * q.den_sign,
             RootOf(_) => self.cmp_rat(&Rat::zero()) as i32,
         }
@@ -162,14 +186,11 @@ impl Algebraic {
     /// Exact comparison with a rational: at most one exact evaluation.
     pub fn cmp_rat(&self, r: &Rat) -> Ordering {
         let (x, y) = (self.interval(), r.interval());
-        if x.below(&y) {
-            return Ordering::Less;
-        }
-        if y.below(&x) {
-            return Ordering::Greater;
+        if let Some(o) = told_apart(&x, &y) {
+            return o;
         }
         match &self.0 {
-            Rational(k) => k.value.cmp(r),
+            Rational(k) => cmp_values(&k.value, r),
             // n/d − r has the sign of (n − r·d)·d.
             QuotientOf(q) => {
                 let excess = q.num.scale(r.denom()) - q.den.scale(r.numer());
@@ -177,9 +198,11 @@ impl Algebraic {
             }
             RootOf(root) => {
                 if *r <= root.span.low() {
+                    filter::settled_exactly(false, r.bits());
                     return Ordering::Greater;
                 }
                 if *r >= root.span.high() {
+                    filter::settled_exactly(false, r.bits());
                     return Ordering::Less;
                 }
                 match root.poly.sign_at(r) {
@@ -197,6 +220,7 @@ impl Algebraic {
             RootOf(root) => root.sign_of(p),
             QuotientOf(q) => {
                 if let Some(s) = p.eval_interval(self.interval()).sign() {
+                    filter::settled(Stage::Double);
                     return s;
                 }
                 // den^n·p(num/den) at the root, while its degree stays small.
@@ -500,15 +524,48 @@ fn separating_grid(a: &Algebraic, b: &Algebraic) -> u64 {
     }
 }
 
+/// What enclosures alone prove: the order of numbers that they hold apart, or equality where both
+/// are one double.
+#[inline]
+fn told_apart(x: &Interval, y: &Interval) -> Option<Ordering> {
+    let order = if x.below(y) {
+        Ordering::Less
+    } else if y.below(x) {
+        Ordering::Greater
+    } else if x.lo == x.hi && *x == *y && x.is_finite() {
+        Ordering::Equal
+    } else {
+        return None;
+    };
+    filter::settled(Stage::Double);
+    Some(order)
+}
+
+/// Two rationals that their enclosures do not tell apart.
+fn cmp_values(a: &Rat, b: &Rat) -> Ordering {
+    let order = a.cmp(b);
+    filter::settled_exactly(order.is_eq(), a.bits().max(b.bits()));
+    order
+}
+
 /// Two roots that are known to differ.
 fn cmp_different(a: &Root, b: &Root) -> Ordering {
-    let mut bits = grid(a.enclosure(), 100);
+    let wider = grid(a.enclosure(), 100);
+    let mut bits = wider;
+    let settled = |bits| {
+        if bits == wider {
+            filter::settled(Stage::Wider);
+        } else {
+            filter::settled_exactly(false, bits);
+        }
+    };
     let (mut x, mut y) = (a.refine(), b.refine());
     loop {
         // With a value met exactly one has v ≤ number ≤ v, else k < number·2^bits < k + 1.
         let ((lo, hi), (l, h)) = match (x.cell(bits), y.cell(bits)) {
             (Cell::Between(j), Cell::Between(k)) => {
                 if j != k {
+                    settled(bits);
                     return j.cmp(&k);
                 }
                 bits = 2 * bits + 32;
@@ -517,9 +574,11 @@ fn cmp_different(a: &Root, b: &Root) -> Ordering {
             (p, q) => (ends(p, bits), ends(q, bits)),
         };
         if hi <= l {
+            settled(bits);
             return Ordering::Less;
         }
         if h <= lo {
+            settled(bits);
             return Ordering::Greater;
         }
         bits = 2 * bits + 32;
@@ -528,7 +587,7 @@ fn cmp_different(a: &Root, b: &Root) -> Ordering {
 
 impl From<Rat> for Algebraic {
     fn from(value: Rat) -> Algebraic {
-        let interval = value.interval();
+        let interval = value.tight();
         Algebraic(Rational(Arc::new(Known { value, interval })))
     }
 }
@@ -539,19 +598,28 @@ impl From<Root> for Algebraic {
 }
 impl PartialEq for Algebraic {
     fn eq(&self, o: &Algebraic) -> bool {
-        if !self.interval().meets(&o.interval()) {
-            return false;
+        if self.named_alike(o) {
+            return true;
+        }
+        if let Some(o) = told_apart(&self.interval(), &o.interval()) {
+            return o.is_eq();
         }
         match (&self.0, &o.0) {
-            (Rational(a), Rational(b)) => a.value == b.value,
+            (Rational(a), Rational(b)) => cmp_values(&a.value, &b.value).is_eq(),
             (Rational(a), _) => o.cmp_rat(&a.value).is_eq(),
             (_, Rational(b)) => self.cmp_rat(&b.value).is_eq(),
             (QuotientOf(a), QuotientOf(b)) if Arc::ptr_eq(&a.root, &b.root) => {
                 a.cmp_same(b).is_eq()
             }
             _ => match (self.root(), o.root()) {
+                (Ok(a), Ok(b)) if Arc::ptr_eq(a, b) => {
+                    filter::settled(Stage::Name);
+                    true
+                }
                 (Ok(a), Ok(b)) => {
-                    Arc::ptr_eq(a, b) || a.enclosure().meets(&b.enclosure()) && a.equals(b)
+                    let same = a.enclosure().meets(&b.enclosure()) && a.equals(b);
+                    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
+                    same
                 }
                 (Err(r), _) => o.cmp_rat(r).is_eq(),
                 (_, Err(r)) => self.cmp_rat(r).is_eq(),
@@ -574,15 +642,14 @@ impl Quotient {
 }
 impl Ord for Algebraic {
     fn cmp(&self, o: &Algebraic) -> Ordering {
-        let (x, y) = (self.interval(), o.interval());
-        if x.below(&y) {
-            return Ordering::Less;
+        if self.named_alike(o) {
+            return Ordering::Equal;
         }
-        if y.below(&x) {
-            return Ordering::Greater;
+        if let Some(o) = told_apart(&self.interval(), &o.interval()) {
+            return o;
         }
         match (&self.0, &o.0) {
-            (Rational(a), Rational(b)) => return a.value.cmp(&b.value),
+            (Rational(a), Rational(b)) => return cmp_values(&a.value, &b.value),
             (Rational(a), _) => return o.cmp_rat(&a.value).reverse(),
             (_, Rational(b)) => return self.cmp_rat(&b.value),
             (QuotientOf(a), QuotientOf(b)) if Arc::ptr_eq(&a.root, &b.root) => {
@@ -596,17 +663,15 @@ impl Ord for Algebraic {
             (_, Err(r)) => return self.cmp_rat(r),
         };
         if Arc::ptr_eq(a, b) {
+            filter::settled(Stage::Name);
             return Ordering::Equal;
         }
         // Settling a quotient may have narrowed its enclosure.
-        let (x, y) = (a.enclosure(), b.enclosure());
-        if x.below(&y) {
-            return Ordering::Less;
-        }
-        if y.below(&x) {
-            return Ordering::Greater;
+        if let Some(o) = told_apart(&a.enclosure(), &b.enclosure()) {
+            return o;
         }
         if a.equals(b) {
+            filter::settled_exactly(true, a.poly.most_bits().max(b.poly.most_bits()));
             Ordering::Equal
         } else {
             cmp_different(a, b)

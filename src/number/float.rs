@@ -6,7 +6,7 @@
 //! plain doubles only proposes where a root might be: what is returned has been proven by interval signs.
 
 use super::isolate::{Isolated, root_bound};
-use super::{Int, Interval, Poly};
+use super::{Int, Interval, Poly, filter};
 
 /// The highest degree handled; more would only make the buffers larger.
 const MOST: usize = 10;
@@ -33,7 +33,7 @@ impl FloatPoly {
     pub(crate) fn new(p: &Poly) -> Option<FloatPoly> {
         let c = p.coeffs();
         let n = c.len().checked_sub(1)?;
-        if n > MOST {
+        if n > MOST || !filter::on() {
             return None;
         }
         let mut out = [Interval::point(0.0); MOST + 1];
@@ -244,7 +244,7 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) -> Option<()> {
 /// The real roots of a square-free polynomial with non-zero constant term, ascending; None where
 /// doubles do not suffice.
 pub(crate) fn isolate(c: &[Int]) -> Option<Vec<Isolated>> {
-    if c.len() > MOST + 1 {
+    if c.len() > MOST + 1 || !filter::on() {
         return None;
     }
     let mut out = Vec::new();

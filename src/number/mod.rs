@@ -3,7 +3,9 @@
 //! big-number crate by name.
 
 mod algebraic;
+mod backend;
 mod factor;
+pub mod filter;
 mod float;
 mod int;
 mod interval;
@@ -14,9 +16,12 @@ mod poly;
 mod rat;
 mod refine;
 mod root;
+mod scalar;
 
 pub use algebraic::Algebraic;
+pub use backend::{Backend, backend, set_backend};
 pub use int::Int;
 pub use interval::Interval;
 pub use poly::Poly;
 pub use rat::Rat;
+pub use scalar::Scalar;

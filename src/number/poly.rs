@@ -5,6 +5,7 @@
 //! reduces a fraction. Every expensive question (gcd, divisibility) is put to a word-size prime first.
 
 use super::algebraic::Algebraic;
+use super::filter::{self, Stage};
 use super::int::ops;
 use super::isolate::isolate;
 use super::modular::gcd_degree_bound;
@@ -139,17 +140,27 @@ impl Poly {
     /// Sign of the value at a rational (f64 filter first).
     pub fn sign_at(&self, x: &Rat) -> i32 {
         if let Some(s) = self.eval_interval(x.interval()).sign() {
+            filter::settled(Stage::Double);
             return s;
         }
-        self.eval_homogeneous(x).sign()
+        let s = self.eval_homogeneous(x).sign();
+        filter::settled_exactly(s == 0, self.most_bits());
+        s
     }
     /// Enclosure of the range over an interval.
     pub fn eval_interval(&self, x: Interval) -> Interval {
+        if !filter::on() {
+            return Interval::all();
+        }
         let mut terms = self.coeffs.iter().rev();
         let Some(first) = terms.next() else {
             return Interval::point(0.0);
         };
         terms.fold(first.interval(), |acc, c| acc * x + c.interval())
+    }
+    /// The bits of the largest coefficient.
+    pub(crate) fn most_bits(&self) -> u64 {
+        self.coeffs.iter().map(Int::bits).max().unwrap_or(0)
     }
     /// Derivative.
     pub fn derivative(&self) -> Poly {

@@ -7,7 +7,7 @@
 
 use super::int::{gcd_u64, ops};
 use super::interval::pow2;
-use super::{Int, Interval};
+use super::{Int, Interval, filter};
 use num_rational::BigRational;
 use std::cmp::Ordering;
 use std::fmt;
@@ -222,8 +222,21 @@ impl Rat {
         let x = Rounded::new(q, sticky, e).nearest()?;
         Some(if self.sign() < 0 { -x + 0.0 } else { x })
     }
-    /// Tightest double enclosure (a point where exact).
+    /// Tightest double enclosure (a point where exact); the whole line where the filter is off.
+    #[inline]
     pub fn interval(&self) -> Interval {
+        if filter::on() {
+            self.tight()
+        } else {
+            Interval::all()
+        }
+    }
+    /// The bits of the longer part.
+    pub(crate) fn bits(&self) -> u64 {
+        self.num.bits().max(self.den.bits())
+    }
+    /// Tightest double enclosure.
+    pub(crate) fn tight(&self) -> Interval {
         if let Some((q, r)) = self.quotient() {
             return match r.partial_cmp(&0.0) {
                 Some(Ordering::Greater) => Interval {
@@ -496,9 +509,12 @@ fn signed(sign: i32, x: Interval) -> Interval {
 }
 
 impl Int {
-    /// Tightest double enclosure (a point where exact).
+    /// Tightest double enclosure (a point where exact); the whole line where the filter is off.
     #[inline]
     pub fn interval(&self) -> Interval {
+        if !filter::on() {
+            return Interval::all();
+        }
         if let Some(v) = self.to_i64()
             && v.unsigned_abs() >> 53 == 0
         {

@@ -4,6 +4,7 @@
 //! is costly to know (a narrow enclosure, whether it is rational, the minimal polynomial) is worked out on the
 //! first question and kept.
 
+use super::filter::{self, Stage};
 use super::float::FloatPoly;
 use super::modular::gcd_degree_bound;
 use super::refine::{Cell, Refiner, Span};
@@ -62,12 +63,18 @@ impl Root {
     /// A refinement that starts from the narrow enclosure: always, so that no answer depends on what
     /// was asked before.
     pub(crate) fn refine(&self) -> Refiner<'_> {
+        if !filter::on() {
+            return Refiner::new(&self.poly, self.span.clone(), self.sign_lo);
+        }
         self.enclosure();
         let best = self.enclosure.get().and_then(|(_, s)| s.as_ref());
         Refiner::new(&self.poly, best.unwrap_or(&self.span).clone(), self.sign_lo)
     }
-    /// Certified double enclosure, made once.
+    /// Certified double enclosure, made once; the whole line where the filter is off.
     pub(crate) fn enclosure(&self) -> Interval {
+        if !filter::on() {
+            return Interval::all();
+        }
         self.enclosure.get_or_init(|| self.enclose()).0
     }
     fn enclose(&self) -> (Interval, Option<Span>) {
@@ -189,12 +196,15 @@ impl Root {
     /// Exact sign of a polynomial at the root: an interval first, then a gcd for zero, then refinement.
     pub(crate) fn sign_of(&self, p: &Poly) -> i32 {
         if let Some(s) = p.eval_interval(self.enclosure()).sign() {
+            filter::settled(Stage::Double);
             return s;
         }
         if self.is_root_of(p) {
+            filter::settled_exactly(true, self.poly.most_bits().max(p.most_bits()));
             return 0;
         }
-        let mut bits = grid(self.enclosure(), 100);
+        let wider = grid(self.enclosure(), 100);
+        let mut bits = wider;
         let mut refiner = self.refine();
         loop {
             let k = match refiner.cell(bits) {
@@ -203,6 +213,11 @@ impl Root {
             };
             let (value, error) = value_on_cell(p, &k, bits);
             if value.abs() > error {
+                if bits == wider {
+                    filter::settled(Stage::Wider);
+                } else {
+                    filter::settled_exactly(false, value.bits());
+                }
                 return value.sign();
             }
             bits = 2 * bits + 32;

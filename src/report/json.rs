@@ -3,6 +3,7 @@
 //! The types are the format; the JSON Schema is derived from them. Times are on the clock of the
 //! whole plan, except that t in a segment's curve counts from the start of its phase.
 
+use super::ledger::LedgerDocument;
 use super::num::{Num, Numbers, Orientation};
 use crate::contact::{Contact, ContactKind};
 use crate::motion::trajectory::Sliding;
@@ -31,12 +32,16 @@ pub struct ResultDocument {
     /// Which algorithm ran: `naive` or `sweep`.
     #[schemars(extend("enum" = ["naive", "sweep"]))]
     pub method: &'static str,
+    /// Which library carried integers too long for a machine word.
+    pub backend: &'static str,
     /// The phases that ran.
     pub phases: Vec<PhaseDocument>,
     /// How it ended.
     pub outcome: OutcomeDocument,
     /// One history a pawl, in file order.
     pub pawls: Vec<PawlDocument>,
+    /// What it took.
+    pub ledger: LedgerDocument,
 }
 
 /// One phase as it really ran.
@@ -276,11 +281,12 @@ impl ResultDocument {
             scene,
             numbers: Numbers::new(&trajectory.phases),
         };
-        ResultDocument {
+        let mut document = ResultDocument {
             schema: "snapfit.result/1",
             scene: scene.name.clone(),
             arithmetic: how.arithmetic,
             method: how.method,
+            backend: crate::number::backend().name(),
             phases: trajectory
                 .phases
                 .iter()
@@ -301,7 +307,12 @@ impl ResultDocument {
                     segments: p.segments.iter().map(|s| writer.segment(s)).collect(),
                 })
                 .collect(),
+            ledger: LedgerDocument::new(&trajectory.ledger),
+        };
+        if how.arithmetic == "f64" {
+            document.in_doubles();
         }
+        document
     }
 
     /// The document as text, with a line feed at its end. The same bytes for the same trajectory.

@@ -6,11 +6,12 @@
 //! the only one that computes in doubles, since an eye cannot tell.
 
 pub mod json;
+pub mod ledger;
 mod layout;
 mod num;
 pub mod picture;
 pub mod summary;
-mod theta;
+pub(crate) mod theta;
 mod words;
 
 pub use layout::pretty;

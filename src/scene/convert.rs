@@ -9,9 +9,12 @@ use super::tree::{Kind, Node};
 use super::types::{Classify, Motion, Obstacle, Pawl, Root, Scene};
 use crate::number::Rat;
 
+/// The tables of a format and the keys of each.
+pub(crate) type Tables = &'static [(&'static str, &'static [&'static str])];
+
 /// The tables of the format and their keys: the one list that the reader, its suggestions and the
 /// schema's test go by. The table with the empty name is the file itself.
-pub(crate) const TABLES: &[(&str, &[&str])] = &[
+pub(crate) const TABLES: Tables = &[
     (
         "",
         &["scene", "obstacle", "root", "pawl", "motion", "classify"],
@@ -34,30 +37,41 @@ pub(crate) const TABLES: &[(&str, &[&str])] = &[
 pub const MAX_ERRORS: usize = 100;
 
 /// A scene in the making: what could be read, where it stands, and what is wrong so far.
-pub(super) struct Conversion<'a> {
-    pub(super) tree: &'a Node,
-    pub(super) sources: &'a Sources,
+pub(crate) struct Conversion<'a> {
+    /// What the file describes, for messages: a scene or a structure.
+    noun: &'static str,
+    /// The tables of its format.
+    tables: Tables,
+    pub(crate) tree: &'a Node,
+    pub(crate) sources: &'a Sources,
     /// None as soon as a part is missing that the scene cannot be without.
-    pub(super) name: Option<String>,
-    pub(super) friction: Option<Rat>,
-    pub(super) obstacles: Vec<Option<Obstacle>>,
+    pub(crate) name: Option<String>,
+    pub(crate) friction: Option<Rat>,
+    pub(crate) obstacles: Vec<Option<Obstacle>>,
     /// The outer option: whether the file has one; the inner: whether it could be read.
-    pub(super) root: Option<Option<Root>>,
-    pub(super) pawls: Vec<Option<Pawl>>,
-    pub(super) motions: Vec<Option<Motion>>,
-    pub(super) classify: Option<Classify>,
-    pub(super) errors: Vec<Diagnostic>,
-    pub(super) warnings: Vec<Diagnostic>,
+    pub(crate) root: Option<Option<Root>>,
+    pub(crate) pawls: Vec<Option<Pawl>>,
+    pub(crate) motions: Vec<Option<Motion>>,
+    pub(crate) classify: Option<Classify>,
+    pub(crate) errors: Vec<Diagnostic>,
+    pub(crate) warnings: Vec<Diagnostic>,
     /// Bits of all numbers so far, u64::MAX once the limit has been passed and said.
-    pub(super) bits: u64,
+    pub(crate) bits: u64,
     /// Vertices of all rings so far.
-    pub(super) vertices: usize,
+    pub(crate) vertices: usize,
 }
 
 impl<'a> Conversion<'a> {
-    /// Reads all that can be read of a tree.
-    pub(super) fn of(tree: &'a Node, sources: &'a Sources) -> Conversion<'a> {
-        let mut c = Conversion {
+    /// A conversion that has read nothing yet, of a format with other tables than a scene's.
+    pub(crate) fn bare(
+        noun: &'static str,
+        tables: Tables,
+        tree: &'a Node,
+        sources: &'a Sources,
+    ) -> Conversion<'a> {
+        Conversion {
+            noun,
+            tables,
             tree,
             sources,
             name: None,
@@ -71,7 +85,12 @@ impl<'a> Conversion<'a> {
             warnings: Vec::new(),
             bits: 0,
             vertices: 0,
-        };
+        }
+    }
+
+    /// Reads all that can be read of a tree.
+    pub(crate) fn of(tree: &'a Node, sources: &'a Sources) -> Conversion<'a> {
+        let mut c = Conversion::bare("scene", TABLES, tree, sources);
         if c.table(tree, "") {
             c.scene_section();
             c.obstacles = c.list_of("obstacle", "no-obstacle", Self::obstacle);
@@ -84,7 +103,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// The scene, if every part of it could be read, with errors and warnings.
-    pub(super) fn finish(self) -> (Option<Scene>, Vec<Diagnostic>, Vec<Diagnostic>) {
+    pub(crate) fn finish(self) -> (Option<Scene>, Vec<Diagnostic>, Vec<Diagnostic>) {
         let scene = self.errors.is_empty().then_some(()).and_then(|()| {
             Some(Scene {
                 name: self.name?,
@@ -103,7 +122,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// Notes an error at a place, unless there are [`MAX_ERRORS`] already.
-    pub(super) fn error(
+    pub(crate) fn error(
         &mut self,
         span: Span,
         code: &'static str,
@@ -121,7 +140,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// Notes a warning at a place.
-    pub(super) fn warning(
+    pub(crate) fn warning(
         &mut self,
         span: Span,
         code: &'static str,
@@ -156,13 +175,13 @@ impl<'a> Conversion<'a> {
     }
 
     /// An optional section that is a single table.
-    fn section(&mut self, key: &'static str) -> Option<&'a Node> {
+    pub(crate) fn section(&mut self, key: &'static str) -> Option<&'a Node> {
         let node = self.tree.get(key)?;
         self.table(node, key).then_some(node)
     }
 
     /// A list of tables; an item that cannot be read leaves a None.
-    fn list_of<T>(
+    pub(crate) fn list_of<T>(
         &mut self,
         key: &'static str,
         none: &'static str,
@@ -187,7 +206,7 @@ impl<'a> Conversion<'a> {
             self.error(
                 node.unwrap_or(self.tree).span,
                 none,
-                format!("the scene has no {key}"),
+                format!("the {} has no {key}", self.noun),
                 format!("add at least one [[{key}]]"),
             );
         }
@@ -312,8 +331,13 @@ impl<'a> Conversion<'a> {
     // What sections are made of.
 
     /// Whether the node is a table; notes the keys that a table of this name does not have.
-    fn table(&mut self, node: &Node, name: &'static str) -> bool {
-        let shown = if name.is_empty() { "a scene" } else { name };
+    pub(crate) fn table(&mut self, node: &Node, name: &'static str) -> bool {
+        let whole = format!("a {}", self.noun);
+        let shown = if name.is_empty() {
+            whole.as_str()
+        } else {
+            name
+        };
         let Kind::Table(entries) = &node.kind else {
             self.error(
                 node.span,
@@ -321,7 +345,10 @@ impl<'a> Conversion<'a> {
                 format!("{shown} is a table, not {}", node.describe()),
                 if name.is_empty() {
                     "in JSON the file is one object".to_owned()
-                } else if matches!(name, "obstacle" | "pawl" | "motion") {
+                } else if matches!(
+                    name,
+                    "obstacle" | "pawl" | "motion" | "body" | "joint" | "view"
+                ) {
                     format!("in TOML write [[{name}]], in JSON a list of objects")
                 } else {
                     format!("in TOML write [{name}] once, with single brackets")
@@ -329,14 +356,15 @@ impl<'a> Conversion<'a> {
             );
             return false;
         };
-        let keys = TABLES
+        let tables = self.tables;
+        let keys = tables
             .iter()
             .find(|(table, _)| *table == name)
             .map_or(&[] as &[&str], |(_, keys)| keys);
         for entry in entries {
             if !keys.contains(&entry.key.as_str()) && self.errors.len() < MAX_ERRORS {
                 let place = match name {
-                    "" => "at the top of a scene".to_owned(),
+                    "" => format!("at the top of {whole}"),
                     _ => format!("in `{name}`"),
                 };
                 self.error(
@@ -350,7 +378,7 @@ impl<'a> Conversion<'a> {
         true
     }
 
-    fn required<T>(
+    pub(crate) fn required<T>(
         &mut self,
         table: &'a Node,
         key: &'static str,
@@ -377,7 +405,7 @@ impl<'a> Conversion<'a> {
         }
     }
 
-    fn optional<T>(
+    pub(crate) fn optional<T>(
         &mut self,
         table: &'a Node,
         key: &str,
@@ -394,6 +422,9 @@ const EXAMPLES: &[(&str, &str)] = &[
         "vertices",
         "vertices = [[\"0\",\"0\"], [\"1\",\"0\"], [\"0\",\"1\"]]",
     ),
+    ("epsilon", "epsilon = \"3/5\""),
+    ("position", "position = [\"0\",\"0\"]"),
+    ("terms", "terms = [ { body = \"…\", dy = \"1\" } ]"),
     ("hinge", "hinge = [\"0\",\"0\"]"),
     (
         "velocity",
@@ -430,7 +461,7 @@ fn nearest<'k>(key: &str, known: &[&'k str]) -> Option<&'k str> {
 }
 
 /// Whether a table has a key that is a slip of this one: then its absence needs no message.
-pub(super) fn misspelt(table: &Node, key: &str) -> bool {
+pub(crate) fn misspelt(table: &Node, key: &str) -> bool {
     match &table.kind {
         // Only a file that means harm has more keys than the first few.
         Kind::Table(entries) => entries
@@ -442,7 +473,7 @@ pub(super) fn misspelt(table: &Node, key: &str) -> bool {
 }
 
 /// A text that is short enough for a message.
-pub(super) fn clip(text: &str) -> String {
+pub(crate) fn clip(text: &str) -> String {
     const MOST: usize = 40;
     if text.chars().count() <= MOST {
         text.to_owned()

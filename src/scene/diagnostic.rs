@@ -111,6 +111,34 @@ pub const CODES: &[(&str, &str)] = &[
     ),
 ];
 
+/// The codes that only structures give ([`crate::flex`]); the others are those of [`CODES`].
+pub const STRUCTURE_CODES: &[(&str, &str)] = &[
+    ("no-body", "a structure without a body"),
+    ("unknown-body", "a name that no body of the structure has"),
+    (
+        "unknown-vertex",
+        "an index that the body's polygon does not have",
+    ),
+    ("joint-with-itself", "a joint whose two bodies are one"),
+    (
+        "epsilon-not-positive",
+        "an epsilon that is zero or negative",
+    ),
+    (
+        "step-not-positive",
+        "a rule of [step] that must be positive",
+    ),
+    ("unknown-path", "a path that is neither fast nor safe"),
+    ("fixed-and-pinned", "a body that is fixed and pinned"),
+    ("empty-term", "a term of the objective that weighs nothing"),
+    ("mixed-term", "keys in one term that do not belong together"),
+    (
+        "view-cone",
+        "a cone of view that is empty or half a plane or more",
+    ),
+    ("bodies-penetrate", "two bodies overlap at the start"),
+];
+
 /// Whether reading failed or went on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Severity {
@@ -133,9 +161,15 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A diagnostic of severity error at a place, its message still to be given. `code` must be
-    /// one of [`CODES`].
+    /// one of [`CODES`] or [`STRUCTURE_CODES`].
     pub fn error(sources: &Sources, span: Span, code: &'static str) -> Diagnostic {
-        debug_assert!(CODES.iter().any(|(known, _)| *known == code), "{code}");
+        debug_assert!(
+            CODES
+                .iter()
+                .chain(STRUCTURE_CODES)
+                .any(|(known, _)| *known == code),
+            "{code}"
+        );
         Diagnostic {
             severity: Severity::Error,
             code,

@@ -51,13 +51,17 @@ mod write;
 
 pub use check::{CheckReport, Feature, PawlReport, check};
 pub use convert::MAX_ERRORS;
-pub use diagnostic::{CODES, Diagnostic, Rendering, SceneError, Severity};
+pub(crate) use convert::{Conversion, Tables, clip};
+pub use diagnostic::{CODES, Diagnostic, Rendering, STRUCTURE_CODES, SceneError, Severity};
 pub use overrides::apply_overrides;
+pub(crate) use overrides::apply_overrides_at;
 pub use read::{
     MAX_FILE_BYTES, MAX_TOTAL_BITS, MAX_VERTICES, SceneFile, read_scene, read_scene_bytes,
     read_scene_with,
 };
+pub(crate) use schema::{Number, Point, Ring, without_null};
 pub use schema::{SceneDocument, scene_schema};
 pub use source::{Source, Sources, Span};
 pub use tree::{Entry, Kind, MAX_DEPTH, Node, Notation, read_tree};
 pub use types::*;
+pub(crate) use validate::explain_defects;

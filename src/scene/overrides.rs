@@ -25,7 +25,7 @@ pub fn apply_overrides(
 }
 
 /// [`apply_overrides`] that adds the texts of the overrides to the given sources.
-pub(super) fn apply_overrides_at(
+pub(crate) fn apply_overrides_at(
     tree: &mut Node,
     sources: &mut Sources,
     overrides: &[(&str, &str)],
@@ -116,7 +116,7 @@ fn descend<'a>(
                     entries.len() - 1
                 }
                 // `--set classify.total=true` makes the section that it needs.
-                None if step == "classify" => {
+                None if matches!(step, "classify" | "step" | "objective") => {
                     entries.push(Entry {
                         key: step.to_owned(),
                         key_span: span,

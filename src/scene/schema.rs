@@ -21,7 +21,7 @@ pub fn scene_schema() -> Schema {
 
 /// What may be left out of a file may not be null instead, as `schemars` takes an `Option` to
 /// mean: takes the null out of every choice, and the choice away where one way is left.
-fn without_null(schema: &mut Schema) {
+pub(crate) fn without_null(schema: &mut Schema) {
     if let Some(Value::Array(types)) = schema.get_mut("type") {
         types.retain(|t| t != "null");
         if let [only] = types.as_slice() {
@@ -46,7 +46,7 @@ fn without_null(schema: &mut Schema) {
 }
 
 /// An exact number: text that is read exactly, or a bare literal.
-struct Number;
+pub(crate) struct Number;
 
 impl JsonSchema for Number {
     fn schema_name() -> Cow<'static, str> {
@@ -64,12 +64,12 @@ impl JsonSchema for Number {
 }
 
 /// A point or vector: x to the right, y up.
-type Point = [Number; 2];
+pub(crate) type Point = [Number; 2];
 
 /// A simple polygon by its vertices, in either sense, closed implicitly.
 #[derive(JsonSchema)]
 #[schemars(transparent)]
-struct Ring(#[schemars(length(min = 3))] Vec<Point>);
+pub(crate) struct Ring(#[schemars(length(min = 3))] Vec<Point>);
 
 /// A scene for snapfit: fixed obstacles, pawls on torsional springs, and a plan along which the
 /// root carries them.

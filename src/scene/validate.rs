@@ -110,12 +110,12 @@ impl Bodies {
         let obstacles = drawn
             .into_iter()
             .enumerate()
-            .map(|(k, p)| p.filter(|p| proper(c, p, &format!("obstacle.{k}"))))
+            .map(|(k, p)| p.filter(|p| explain_defects(c, p, &format!("obstacle.{k}"))))
             .collect();
         let root = match &c.root {
             Some(Some(root)) => {
                 let p = Polygon::new(root.vertices.clone(), Vec::new());
-                Some(p).filter(|p| proper(c, p, "root"))
+                Some(p).filter(|p| explain_defects(c, p, "root"))
             }
             _ => None,
         };
@@ -130,7 +130,7 @@ impl Bodies {
         let pawls = drawn
             .into_iter()
             .enumerate()
-            .map(|(k, p)| p.filter(|p| proper(c, p, &format!("pawl.{k}"))))
+            .map(|(k, p)| p.filter(|p| explain_defects(c, p, &format!("pawl.{k}"))))
             .collect();
         Bodies {
             obstacles,
@@ -141,7 +141,7 @@ impl Bodies {
 }
 
 /// Notes every defect of a polygon at its place in the file; whether there is none.
-fn proper(c: &mut Conversion<'_>, polygon: &Polygon, table: &str) -> bool {
+pub(crate) fn explain_defects(c: &mut Conversion<'_>, polygon: &Polygon, table: &str) -> bool {
     let found = defects(polygon);
     let rings = RingPlaces {
         table: c.tree.find(table).unwrap_or(c.tree),

@@ -12,7 +12,7 @@ use crate::number::literal::{self, LiteralError, MAX_DIGITS, MAX_EXPONENT};
 const PAIR_HELP: &str = "write [\"x\", \"y\"]";
 
 impl<'a> Conversion<'a> {
-    pub(super) fn wrong_type(&mut self, node: &Node, wanted: &str, help: &str) {
+    pub(crate) fn wrong_type(&mut self, node: &Node, wanted: &str, help: &str) {
         self.error(
             node.span,
             "wrong-type",
@@ -21,7 +21,7 @@ impl<'a> Conversion<'a> {
         );
     }
 
-    pub(super) fn string(&mut self, node: &'a Node) -> Option<String> {
+    pub(crate) fn string(&mut self, node: &'a Node) -> Option<String> {
         match &node.kind {
             Kind::String(s) => Some(s.clone()),
             _ => {
@@ -31,7 +31,7 @@ impl<'a> Conversion<'a> {
         }
     }
 
-    pub(super) fn boolean(&mut self, node: &'a Node) -> Option<bool> {
+    pub(crate) fn boolean(&mut self, node: &'a Node) -> Option<bool> {
         match &node.kind {
             Kind::Bool(b) => Some(*b),
             _ => {
@@ -41,7 +41,7 @@ impl<'a> Conversion<'a> {
         }
     }
 
-    pub(super) fn number(&mut self, node: &'a Node) -> Option<Rat> {
+    pub(crate) fn number(&mut self, node: &'a Node) -> Option<Rat> {
         let text = match &node.kind {
             Kind::String(s) | Kind::Number(s) => s,
             _ => {
@@ -68,7 +68,9 @@ impl<'a> Conversion<'a> {
                     self.error(
                         node.span,
                         "number-too-large",
-                        format!("up to here the scene's numbers have more than {MAX_TOTAL_BITS} bits together"),
+                        format!(
+                            "up to here all numbers have more than {MAX_TOTAL_BITS} bits together"
+                        ),
                         "use fewer digits or smaller exponents",
                     );
                 }
@@ -109,7 +111,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// Two numbers in an array.
-    pub(super) fn pair(&mut self, node: &'a Node) -> Option<(Rat, Rat)> {
+    pub(crate) fn pair(&mut self, node: &'a Node) -> Option<(Rat, Rat)> {
         match &node.kind {
             Kind::Array(items) if items.len() == 2 => {
                 let first = self.number(&items[0]);
@@ -128,11 +130,11 @@ impl<'a> Conversion<'a> {
         }
     }
 
-    pub(super) fn point(&mut self, node: &'a Node) -> Option<Vec2> {
+    pub(crate) fn point(&mut self, node: &'a Node) -> Option<Vec2> {
         self.pair(node).map(|(x, y)| Vec2::new(x, y))
     }
 
-    pub(super) fn ring(&mut self, node: &'a Node) -> Option<Vec<Vec2>> {
+    pub(crate) fn ring(&mut self, node: &'a Node) -> Option<Vec<Vec2>> {
         if let Kind::Array(items) = &node.kind {
             let before = self.vertices;
             self.vertices += items.len();
@@ -141,7 +143,7 @@ impl<'a> Conversion<'a> {
                     self.error(
                         node.span,
                         "too-many-vertices",
-                        format!("up to here the scene has more than {MAX_VERTICES} vertices"),
+                        format!("up to here the file has more than {MAX_VERTICES} vertices"),
                         "simplify the polygons",
                     );
                 }
@@ -152,7 +154,7 @@ impl<'a> Conversion<'a> {
     }
 
     /// An array; None if any of its items cannot be read.
-    pub(super) fn list<T>(
+    pub(crate) fn list<T>(
         &mut self,
         node: &'a Node,
         wanted: &str,

@@ -1,6 +1,6 @@
-use super::Time;
 use crate::contact::{Chart, Contact};
-use crate::number::{Algebraic, Int, Interval, Poly, Rat};
+use crate::kernel::{Filtered, Instant, Kernel, Position};
+use crate::number::Interval;
 
 /// Index of an arc in its [`super::Slice`].
 pub type ArcId = u32;
@@ -10,20 +10,20 @@ pub type CurveId = u32;
 /// A curve P(u) + t·Q(u) = 0 on the cylinder, hash-consed: content removed, first non-zero
 /// coefficient of (Q, P) from the top positive, so that coincident edges share one id.
 #[derive(Clone, Debug)]
-pub struct Curve {
+pub struct Curve<K: Kernel = Filtered> {
     /// P as written in u = tan(θ/2), constant first.
-    pub p: [Int; 3],
+    pub p: [K::Coef; 3],
     /// Q likewise.
-    pub q: [Int; 3],
+    pub q: [K::Coef; 3],
     /// P per chart with the common factor of P and Q removed.
-    pub(super) rp: [Poly; 2],
+    pub(super) rp: [K::Poly; 2],
     /// Q per chart with the common factor removed.
-    pub(super) rq: [Poly; 2],
+    pub(super) rq: [K::Poly; 2],
 }
 
-impl Curve {
+impl<K: Kernel> Curve<K> {
     /// P and Q in a chart, without their common factor: on the graph part t = −P/Q.
-    pub fn reduced(&self, chart: Chart) -> (&Poly, &Poly) {
+    pub fn reduced(&self, chart: Chart) -> (&K::Poly, &K::Poly) {
         (&self.rp[chart.index()], &self.rq[chart.index()])
     }
 }
@@ -61,16 +61,16 @@ pub enum Shape {
 
 /// An end of an arc.
 #[derive(Clone, Debug)]
-pub struct End {
+pub struct End<K: Kernel = Filtered> {
     /// Chart position.
-    pub x: Algebraic,
+    pub x: K::Root,
     /// When.
-    pub t: Time,
+    pub t: K::Time,
 }
 
 /// A piece of a patch on the cylinder: in one chart, monotone, with both ends known exactly.
 #[derive(Clone, Debug)]
-pub struct Arc {
+pub struct Arc<K: Kernel = Filtered> {
     /// Which contact it is.
     pub contact: Contact,
     /// The chart that x is meant in.
@@ -85,34 +85,34 @@ pub struct Arc {
     /// Where its contact leaves the configuration free.
     pub side: Side,
     /// The end with the smaller x (graph, wall) or the earlier one (level).
-    pub lo: End,
+    pub lo: End<K>,
     /// The end with the larger x (graph, wall) or the later one (level).
-    pub hi: End,
+    pub hi: End<K>,
     /// Enclosure of the times it spans.
     pub t_span: Interval,
     /// Enclosure of the positions it spans.
     pub x_span: Interval,
 }
 
-impl Arc {
+impl<K: Kernel> Arc<K> {
     /// Its earlier end (either one of a wall).
-    pub fn start(&self) -> &End {
+    pub fn start(&self) -> &End<K> {
         match self.shape {
             Shape::Graph { rising: false } => &self.hi,
             _ => &self.lo,
         }
     }
     /// Its later end (either one of a wall).
-    pub fn end(&self) -> &End {
+    pub fn end(&self) -> &End<K> {
         match self.shape {
             Shape::Graph { rising: false } => &self.lo,
             _ => &self.hi,
         }
     }
-    /// The time of a wall, which is rational.
-    pub fn wall_time(&self) -> Option<&Rat> {
+    /// The time of a wall, which is a number.
+    pub fn wall_time(&self) -> Option<K::Num> {
         match self.shape {
-            Shape::Wall => self.lo.t.as_rat(),
+            Shape::Wall => self.lo.t.known(),
             _ => None,
         }
     }
@@ -121,7 +121,7 @@ impl Arc {
         self.side != Side::Both
     }
     /// Computes the enclosures from the ends.
-    pub(super) fn with_spans(mut self) -> Arc {
+    pub(super) fn with_spans(mut self) -> Arc<K> {
         let hull = |a: Interval, b: Interval| Interval {
             lo: a.lo.min(b.lo),
             hi: a.hi.max(b.hi),

@@ -1,41 +1,45 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
-use super::{Arc, ArcId, Curve, CurveId, End, Shape, Side, Time};
+use super::{Arc, ArcId, Curve, CurveId, End, Point, Shape, Side};
 use crate::contact::{
     Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
 };
 use crate::geometry::Vec2;
-use crate::number::{Algebraic, Int, Interval, Poly, Rat};
+use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
+use crate::number::filter::{self, Stage};
+use crate::number::{Interval, Scalar};
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Mutex;
 
 /// The slice of one pawl over one phase: its arcs, and what is known of their crossings.
 #[derive(Debug)]
-pub struct Slice {
+pub struct Slice<K: Kernel = Filtered> {
     /// The phase as the hinge sees it.
-    pub frame: Frame,
-    pub(super) curves: Vec<Curve>,
-    pub(super) arcs: Vec<Arc>,
+    pub frame: Frame<K::Num>,
+    pub(super) curves: Vec<Curve<K>>,
+    pub(super) arcs: Vec<Arc<K>>,
     pub(super) by_chart: [Vec<ArcId>; 2],
     /// The patch that each arc was cut from (none for a limit stop).
     pub(super) patch_of: Vec<Option<u32>>,
-    pub(super) patches: Vec<Patch>,
-    pub(super) crossings: Mutex<super::predicates::CrossCache>,
+    pub(super) patches: Vec<Patch<K::Num>>,
+    /// Per curve, the named points that it passes through.
+    pub(super) named: Vec<Vec<super::Point<K>>>,
+    pub(super) crossings: Mutex<super::predicates::CrossCache<K>>,
 }
 
-impl Slice {
+impl<K: Kernel> Slice<K> {
     /// Builds the arcs of a pawl against the obstacles over a phase, with its angular stops.
     ///
     /// Cost: O(n) patches within reach, each a constant number of quadratics.
     pub fn new(
-        frame: Frame,
-        pawl: &PawlShape,
-        obstacles: &[ObstacleShape],
-        limits: Option<&(Rat, Rat)>,
-    ) -> Slice {
+        frame: Frame<K::Num>,
+        pawl: &PawlShape<K::Num>,
+        obstacles: &[ObstacleShape<K::Num>],
+        limits: Option<&(K::Num, K::Num)>,
+    ) -> Slice<K> {
         let patches = patches(&frame, pawl, obstacles);
-        let mut b = Builder::new(frame, pawl, obstacles);
+        let mut b = Builder::<K>::new(frame, pawl, obstacles);
         for (i, patch) in patches.iter().enumerate() {
             b.add(patch, i as u32);
         }
@@ -47,7 +51,22 @@ impl Slice {
         for (i, a) in b.arcs.iter().enumerate() {
             by_chart[a.chart.index()].push(i as ArcId);
         }
+        let mut named: Vec<Vec<Point<K>>> = vec![Vec::new(); b.curves.len()];
+        for (curve, chart, n) in &b.through {
+            let known = &mut named[*curve as usize];
+            if let Some(t) = n.t.get()
+                && !known.iter().any(|p| p.x.same(&n.x))
+            {
+                known.push(Point {
+                    chart: *chart,
+                    x: n.x.clone(),
+                    t: t.clone(),
+                    on: vec![*curve],
+                });
+            }
+        }
         Slice {
+            named,
             frame: b.frame,
             curves: b.curves,
             arcs: b.arcs,
@@ -58,15 +77,15 @@ impl Slice {
         }
     }
     /// All arcs.
-    pub fn arcs(&self) -> &[Arc] {
+    pub fn arcs(&self) -> &[Arc<K>] {
         &self.arcs
     }
     /// One arc.
-    pub fn arc(&self, id: ArcId) -> &Arc {
+    pub fn arc(&self, id: ArcId) -> &Arc<K> {
         &self.arcs[id as usize]
     }
     /// One curve.
-    pub fn curve(&self, id: CurveId) -> &Curve {
+    pub fn curve(&self, id: CurveId) -> &Curve<K> {
         &self.curves[id as usize]
     }
     /// The arcs of one chart.
@@ -74,64 +93,73 @@ impl Slice {
         &self.by_chart[chart.index()]
     }
     /// The patch an arc was cut from; None for a limit stop.
-    pub fn patch(&self, id: ArcId) -> Option<&Patch> {
+    pub fn patch(&self, id: ArcId) -> Option<&Patch<K::Num>> {
         self.patch_of[id as usize].map(|i| &self.patches[i as usize])
     }
 }
 
 /// A point whose name is known: equal names share one handle.
 #[derive(Debug)]
-struct Named {
-    x: Algebraic,
-    t: std::cell::OnceCell<Time>,
+struct Named<K: Kernel> {
+    x: K::Root,
+    t: std::cell::OnceCell<K::Time>,
 }
+
+/// The points of one name, ascending.
+type Names<K> = Rc<[Rc<Named<K>>]>;
 
 /// The names of points where arcs can end (idea 2: names before numbers).
 #[derive(PartialEq, Eq, Hash)]
-enum Name {
+enum Name<R> {
     /// A pawl vertex on an obstacle vertex, both by their coordinates.
-    VertexVertex(Box<(Vec2, Vec2)>, Chart),
+    VertexVertex(Box<(Vec2<R>, Vec2<R>)>, Chart),
     /// A pawl edge flush on an obstacle edge, both by their supporting lines.
     Flush(u32, u32, Chart),
     /// A vertical tangency of a curve.
     Tangency(CurveId, Chart),
 }
 
-struct Builder<'a> {
-    frame: Frame,
-    pawl: &'a PawlShape,
-    obstacles: &'a [ObstacleShape],
-    curves: Vec<Curve>,
-    curve_ids: HashMap<[Int; 6], CurveId>,
-    arcs: Vec<Arc>,
+struct Builder<'a, K: Kernel> {
+    frame: Frame<K::Num>,
+    pawl: &'a PawlShape<K::Num>,
+    obstacles: &'a [ObstacleShape<K::Num>],
+    curves: Vec<Curve<K>>,
+    curve_ids: HashMap<K::Key, CurveId>,
+    arcs: Vec<Arc<K>>,
     patch_of: Vec<Option<u32>>,
-    named: HashMap<Name, Rc<[Rc<Named>]>>,
+    named: HashMap<Name<K::Num>, Names<K>>,
     pawl_lines: Vec<u32>,
     obstacle_lines: Vec<u32>,
-    minus_one: Rat,
-    one: Rat,
-    speed2: Rat,
+    minus_one: K::Num,
+    one: K::Num,
+    speed2: K::Num,
+    /// Curves and the named points on them.
+    through: Vec<(CurveId, Chart, Rc<Named<K>>)>,
 }
 
 /// Supporting lines (normal, offset) numbered so that collinear edges share a number.
-fn number_lines<'a>(edges: impl Iterator<Item = (&'a Vec2, &'a Vec2)>) -> Vec<u32> {
-    let mut seen: HashMap<Poly, u32> = HashMap::new();
+fn number_lines<'a, K: Kernel>(
+    edges: impl Iterator<Item = (&'a Vec2<K::Num>, &'a Vec2<K::Num>)>,
+) -> Vec<u32> {
+    let mut seen: HashMap<K::Key, u32> = HashMap::new();
     edges
         .map(|(n, on)| {
-            // Offset first, so that primitive() fixes the sign by the normal alone and
-            // orientation stays out of the name.
-            let key = Poly::from_rats(&[n.dot(on), n.x.clone(), n.y.clone(), Rat::one()]);
-            let key = Poly::new(key.coeffs()[..3].to_vec()).primitive();
+            // Offset first, so that the sign is fixed by the normal alone and orientation stays
+            // out of the name.
+            let line = [n.dot(on), n.x.clone(), n.y.clone()];
             let next = seen.len() as u32;
-            *seen.entry(key).or_insert(next)
+            match K::primitive(&line) {
+                Some((line, _)) => *seen.entry(K::key(&line)).or_insert(next),
+                None => next,
+            }
         })
         .collect()
 }
 
 /// One break point of a patch in a chart.
-struct Break {
-    x: Algebraic,
-    point: Option<Rc<Named>>,
+struct Break<K: Kernel> {
+    x: K::Root,
+    point: Option<Rc<Named<K>>>,
 }
 
 /// Interval versions of a patch's conditions in one chart, to settle samples without big numbers.
@@ -142,7 +170,7 @@ struct Filter {
     location: [([Interval; 3], [Interval; 3]); 2],
 }
 
-fn enclose(t: &Trig, chart: Chart) -> [Interval; 3] {
+fn enclose<R: Scalar>(t: &Trig<R>, chart: Chart) -> [Interval; 3] {
     let f = t.form(chart);
     [f[0].interval(), f[1].interval(), f[2].interval()]
 }
@@ -152,7 +180,7 @@ fn horner(f: &[Interval; 3], x: Interval) -> Interval {
 }
 
 impl Filter {
-    fn new(p: &Patch, chart: Chart) -> Filter {
+    fn new<R: Scalar>(p: &Patch<R>, chart: Chart) -> Filter {
         Filter {
             f0: enclose(&p.f0, chart),
             f1: enclose(&p.f1, chart),
@@ -187,43 +215,42 @@ impl Filter {
     }
 }
 
-fn wedge_ok(p: &Patch, chart: Chart, x: &Rat) -> bool {
+fn wedge_ok<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
     p.wedge.iter().all(|w| w.value(chart, x).sign() >= 0)
 }
 
 /// Whether the patch is real at position x of its graph, exactly.
-fn valid_graph(p: &Patch, chart: Chart, x: &Rat) -> bool {
+fn valid_graph<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
     if !wedge_ok(p, chart, x) {
         return false;
     }
     let (f0, f1) = (p.f0.value(chart, x), p.f1.value(chart, x));
     let s = f1.sign();
     p.location.iter().all(|(l0, l1)| {
-        let v = l0.value(chart, x) * &f1 - &f0 * l1.value(chart, x);
+        let v = l0.value(chart, x).times(&f1);
+        let v = v.minus(&f0.times(&l1.value(chart, x)));
         v.sign() * s >= 0
     })
 }
 
-/// Two quadratics with rational coefficients as integer polynomials, by one common factor.
-fn integral_pair(a: &[Rat; 3], b: &[Rat; 3]) -> (Poly, Poly) {
-    let all: Vec<Rat> = a.iter().chain(b).cloned().chain([Rat::one()]).collect();
-    let p = Poly::from_rats(&all);
-    let c = |r: std::ops::Range<usize>| Poly::new(r.map(|i| p.coeff(i)).collect());
-    (c(0..3), c(3..6))
-}
-
 /// P(u) given in u = tan(θ/2) as a polynomial of a chart's x (multiplied by x² > 0 there).
-fn in_chart(c: &[Int; 3], chart: Chart) -> Poly {
-    match chart {
-        Chart::Rest => Poly::new(c.to_vec()),
-        Chart::Back => Poly::new(vec![c[2].clone(), -&c[1], c[0].clone()]),
-    }
+fn in_chart<K: Kernel>(c: &[K::Coef; 3], chart: Chart) -> K::Poly {
+    K::Poly::of_curve(c, chart == Chart::Back)
 }
 
-impl<'a> Builder<'a> {
-    fn new(frame: Frame, pawl: &'a PawlShape, obstacles: &'a [ObstacleShape]) -> Builder<'a> {
-        let pawl_lines = number_lines(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
-        let obstacle_lines = number_lines(
+/// A C-function's part as a polynomial of the chart's x, up to a positive factor.
+fn poly<K: Kernel>(f: &Trig<K::Num>, chart: Chart) -> K::Poly {
+    K::Poly::of(&f.form(chart))
+}
+
+impl<'a, K: Kernel> Builder<'a, K> {
+    fn new(
+        frame: Frame<K::Num>,
+        pawl: &'a PawlShape<K::Num>,
+        obstacles: &'a [ObstacleShape<K::Num>],
+    ) -> Builder<'a, K> {
+        let pawl_lines = number_lines::<K>(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
+        let obstacle_lines = number_lines::<K>(
             obstacles
                 .iter()
                 .flat_map(|o| &o.rings)
@@ -241,26 +268,21 @@ impl<'a> Builder<'a> {
             named: HashMap::new(),
             pawl_lines,
             obstacle_lines,
-            minus_one: Rat::from(-1),
-            one: Rat::one(),
+            minus_one: K::Num::one().negated(),
+            one: K::Num::one(),
             speed2,
+            through: Vec::new(),
         }
     }
 
-    fn roots(&self, p: &Poly) -> Vec<Algebraic> {
-        if p.is_zero() {
-            Vec::new()
-        } else {
-            p.real_roots_in(&self.minus_one, &self.one)
-        }
-    }
-
-    fn named_roots(&mut self, name: Name, poly: impl FnOnce() -> Poly) -> Rc<[Rc<Named>]> {
-        if let Some(r) = self.named.get(&name) {
+    fn named_roots(&mut self, name: Name<K::Num>, poly: impl FnOnce() -> K::Poly) -> Names<K> {
+        if K::names()
+            && let Some(r) = self.named.get(&name)
+        {
             return r.clone();
         }
-        let list: Rc<[Rc<Named>]> = self
-            .roots(&poly())
+        let list: Names<K> = poly()
+            .chart_roots()
             .into_iter()
             .map(|x| {
                 Rc::new(Named {
@@ -275,7 +297,7 @@ impl<'a> Builder<'a> {
 
     /// Where a pawl vertex at a (about the hinge) meets an obstacle vertex at q: R a lies on the
     /// line through q − p₀ along v. Its time is (q − p₀ − R a)·v/|v|².
-    fn vertex_vertex(&mut self, a: &Vec2, q: &Vec2, chart: Chart) -> Rc<[Rc<Named>]> {
+    fn vertex_vertex(&mut self, a: &Vec2<K::Num>, q: &Vec2<K::Num>, chart: Chart) -> Names<K> {
         if a.is_zero() {
             return Rc::new([]);
         }
@@ -283,45 +305,47 @@ impl<'a> Builder<'a> {
         let w = q - &self.frame.p0;
         let v = self.frame.v.clone();
         let list = self.named_roots(key, || {
-            Trig::new(a.cross(&v), -a.dot(&v), -w.cross(&v)).poly(chart)
+            poly::<K>(
+                &Trig::new(a.cross(&v), a.dot(&v).negated(), w.cross(&v).negated()),
+                chart,
+            )
         });
         for n in list.iter() {
             n.t.get_or_init(|| {
-                let num = Trig::new(-a.dot(&v), -a.cross(&v), w.dot(&v)).form(chart);
+                let num =
+                    Trig::new(a.dot(&v).negated(), a.cross(&v).negated(), w.dot(&v)).form(chart);
                 let den = Trig::constant(self.speed2.clone()).form(chart);
-                let (num, den) = integral_pair(&num, &den);
-                Time::ratio(&n.x, num, den)
+                let (num, den) = K::Poly::pair(&num, &den);
+                K::Time::ratio(&n.x, num, den)
             });
         }
         list
     }
 
     /// The curve of a patch and the sign by which the C-function differs from it.
-    fn curve_of(&mut self, patch: &Patch) -> Option<(CurveId, i32)> {
+    fn curve_of(&mut self, patch: &Patch<K::Num>) -> Option<(CurveId, i32)> {
         let p = patch.f0.form(Chart::Rest);
         let q = patch.f1.form(Chart::Rest);
-        let all: Vec<Rat> = p.into_iter().chain(q).collect();
-        let raw = Poly::from_rats(&all);
-        let top = raw.coeffs().last()?;
-        let flip = top.sign();
-        let prim = raw.primitive();
-        let key: [Int; 6] = std::array::from_fn(|i| prim.coeff(i));
+        let all: Vec<K::Num> = p.into_iter().chain(q).collect();
+        let (prim, flip) = K::primitive(&all)?;
+        let key = K::key(&prim);
         if let Some(&id) = self.curve_ids.get(&key) {
             return Some((id, flip));
         }
-        let p: [Int; 3] = std::array::from_fn(|i| key[i].clone());
-        let q: [Int; 3] = std::array::from_fn(|i| key[i + 3].clone());
+        let p: [K::Coef; 3] = std::array::from_fn(|i| prim[i].clone());
+        let q: [K::Coef; 3] = std::array::from_fn(|i| prim[i + 3].clone());
         let common = has_common_root(patch);
         let pairs = Chart::BOTH.map(|c| {
-            let (cp, cq) = (in_chart(&p, c), in_chart(&q, c));
+            let (cp, cq) = (in_chart::<K>(&p, c), in_chart::<K>(&q, c));
             if cq.is_zero() || !common {
                 return (cp, cq);
             }
             if cp.is_zero() {
-                return (cp, Poly::constant(Int::one()));
+                return (cp, K::Poly::one());
             }
-            let g = cp.gcd(&cq);
-            reduce(&cp, &cq, &g)
+            // By one common factor, so that P/Q is unchanged.
+            let g = cp.common(&cq);
+            (cp.quotient(&g), cq.quotient(&g))
         });
         let [(rp0, rq0), (rp1, rq1)] = pairs;
         let id = self.curves.len() as CurveId;
@@ -335,13 +359,13 @@ impl<'a> Builder<'a> {
         Some((id, flip))
     }
 
-    fn add(&mut self, patch: &Patch, index: u32) {
+    fn add(&mut self, patch: &Patch<K::Num>, index: u32) {
         let Some((curve, flip)) = self.curve_of(patch) else {
             return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
         };
         for chart in Chart::BOTH {
             let c = &self.curves[curve as usize];
-            let (p, q) = (in_chart(&c.p, chart), in_chart(&c.q, chart));
+            let (p, q) = (in_chart::<K>(&c.p, chart), in_chart::<K>(&c.q, chart));
             let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
             let before = self.arcs.len();
             if q.is_zero() {
@@ -349,7 +373,7 @@ impl<'a> Builder<'a> {
             } else {
                 let flat = rp.degree().unwrap_or(0) == 0 && rq.degree() == Some(0);
                 if rq.degree() < q.degree() || rp.degree() < p.degree() {
-                    let g = if p.is_zero() { q.clone() } else { p.gcd(&q) };
+                    let g = if p.is_zero() { q.clone() } else { p.common(&q) };
                     self.add_levels(patch, curve, flip, chart, &g, Some((&rp, &rq)));
                 }
                 if flat {
@@ -359,7 +383,7 @@ impl<'a> Builder<'a> {
                 }
             }
             // What lies wholly before the phase or wholly after it can never be met.
-            let end = self.frame.duration.interval().hi;
+            let end = Scalar::interval(&self.frame.duration).hi;
             let mut i = before;
             while i < self.arcs.len() {
                 let s = self.arcs[i].t_span;
@@ -373,7 +397,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn wedge_breaks(&mut self, patch: &Patch, chart: Chart, out: &mut Vec<Break>) {
+    fn wedge_breaks(&mut self, patch: &Patch<K::Num>, chart: Chart, out: &mut Vec<Break<K>>) {
         for k in 0..2 {
             let (pe, oe) = patch.flush[k];
             let key = Name::Flush(
@@ -381,7 +405,10 @@ impl<'a> Builder<'a> {
                 self.obstacle_lines[oe as usize],
                 chart,
             );
-            for n in self.named_roots(key, || patch.wedge[k].poly(chart)).iter() {
+            for n in self
+                .named_roots(key, || poly::<K>(&patch.wedge[k], chart))
+                .iter()
+            {
                 out.push(Break {
                     x: n.x.clone(),
                     point: Some(n.clone()),
@@ -390,16 +417,16 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn plain_breaks(&self, p: &Poly, out: &mut Vec<Break>) {
-        for x in self.roots(p) {
+    fn plain_breaks(&self, p: &K::Poly, out: &mut Vec<Break<K>>) {
+        for x in p.chart_roots() {
             out.push(Break { x, point: None });
         }
     }
 
-    fn seams(&self, out: &mut Vec<Break>) {
+    fn seams(&self, out: &mut Vec<Break<K>>) {
         for r in [&self.minus_one, &self.one] {
             out.push(Break {
-                x: Algebraic::from(r.clone()),
+                x: K::Root::of(r.clone()),
                 point: None,
             });
         }
@@ -408,12 +435,12 @@ impl<'a> Builder<'a> {
     #[allow(clippy::too_many_arguments)]
     fn add_graph(
         &mut self,
-        patch: &Patch,
+        patch: &Patch<K::Num>,
         curve: CurveId,
         flip: i32,
         chart: Chart,
-        (p, q): (&Poly, &Poly),
-        (rp, rq): (&Poly, &Poly),
+        (p, q): (&K::Poly, &K::Poly),
+        (rp, rq): (&K::Poly, &K::Poly),
     ) {
         let mut breaks = Vec::new();
         // Vertex on vertex first: where several names fall on one point the first is kept.
@@ -426,8 +453,14 @@ impl<'a> Builder<'a> {
             }
         }
         self.wedge_breaks(patch, chart, &mut breaks);
+        // A name may lie on the curve's level instead, at another time.
+        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
+        if !factored && K::names() {
+            let points = breaks.iter().filter_map(|b| b.point.clone());
+            self.through.extend(points.map(|n| (curve, chart, n)));
+        }
         // dt/dx = −(P'Q − PQ')/Q².
-        let bend = rp.derivative() * rq - rp * rq.derivative();
+        let bend = rp.derivative().times(rq).minus(&rp.times(&rq.derivative()));
         for n in self
             .named_roots(Name::Tangency(curve, chart), || bend.clone())
             .iter()
@@ -438,19 +471,22 @@ impl<'a> Builder<'a> {
             });
         }
         self.plain_breaks(rq, &mut breaks);
-        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
         if factored {
-            self.plain_breaks(&if p.is_zero() { q.clone() } else { p.gcd(q) }, &mut breaks);
+            self.plain_breaks(
+                &if p.is_zero() { q.clone() } else { p.common(q) },
+                &mut breaks,
+            );
         }
         self.seams(&mut breaks);
         breaks.sort_by(|a, b| a.x.cmp(&b.x));
         breaks.dedup_by(|b, a| a.x == b.x);
-        let filter = Filter::new(patch, chart);
+        let filter = K::ENCLOSES.then(|| Filter::new(patch, chart));
         for w in breaks.windows(2) {
-            let s = Algebraic::between(&w[0].x, &w[1].x);
-            let si = s.interval();
-            if !filter
-                .valid_graph(si)
+            let s = K::Root::between(&w[0].x, &w[1].x);
+            let settled = filter.as_ref();
+            if !settled
+                .and_then(|f| f.valid_graph(Scalar::interval(&s)))
+                .inspect(|_| filter::settled(Stage::Double))
                 .unwrap_or_else(|| valid_graph(patch, chart, &s))
             {
                 continue;
@@ -459,11 +495,10 @@ impl<'a> Builder<'a> {
             // The full P'Q − PQ' is that of the reduced pair times the square of the factor.
             let f1 = q.sign_at(&s) * flip;
             let up = bend_sign * f1;
-            let end = |b: &Break| {
-                let t = || Time::ratio(&b.x, -rp, rq.clone());
-                // A name may lie on the curve's level instead, at another time.
+            let end = |b: &Break<K>| {
+                let t = || K::Time::ratio(&b.x, rp.negated(), rq.clone());
                 let t = match &b.point {
-                    Some(n) if !factored => n.t.get_or_init(t).clone(),
+                    Some(n) if !factored && K::names() => n.t.get_or_init(t).clone(),
                     _ => t(),
                 };
                 End { x: b.x.clone(), t }
@@ -491,23 +526,26 @@ impl<'a> Builder<'a> {
     /// Level arcs at the roots of g, where f = g·(rp + t·rq), or f = g alone.
     fn add_levels(
         &mut self,
-        patch: &Patch,
+        patch: &Patch<K::Num>,
         curve: CurveId,
         flip: i32,
         chart: Chart,
-        g: &Poly,
-        rest: Option<(&Poly, &Poly)>,
+        g: &K::Poly,
+        rest: Option<(&K::Poly, &K::Poly)>,
     ) {
-        for x in self.roots(g) {
+        for x in g.chart_roots() {
             // At the seam one copy is enough: the one at x = −1.
-            if x.cmp_rat(&self.one).is_eq()
-                || patch.wedge.iter().any(|w| x.sign_of(&w.poly(chart)) < 0)
+            if x.cmp_num(&self.one).is_eq()
+                || patch
+                    .wedge
+                    .iter()
+                    .any(|w| x.sign_of(&poly::<K>(w, chart)) < 0)
             {
                 continue;
             }
             let (mut lo, mut hi) = (None, None);
             for (k, (l0, l1)) in patch.location.iter().enumerate() {
-                let slope = x.sign_of(&l1.poly(chart));
+                let slope = x.sign_of(&poly::<K>(l1, chart));
                 if slope == 0 {
                     continue;
                 }
@@ -523,10 +561,10 @@ impl<'a> Builder<'a> {
                         t: t.clone(),
                     },
                     None => {
-                        let (num, den) = integral_pair(&l0.form(chart), &l1.form(chart));
+                        let (num, den) = K::Poly::pair(&l0.form(chart), &l1.form(chart));
                         End {
                             x: x.clone(),
-                            t: Time::ratio(&x, -&num, den),
+                            t: K::Time::ratio(&x, num.negated(), den),
                         }
                     }
                 };
@@ -548,7 +586,7 @@ impl<'a> Builder<'a> {
             if let Some((rp, rq)) = rest
                 && x.sign_of(rq) != 0
             {
-                let cut = Time::ratio(&x, -rp, rq.clone());
+                let cut = K::Time::ratio(&x, rp.negated(), rq.clone());
                 if ends[0].t < cut && cut < hi.t {
                     ends.push(End {
                         x: x.clone(),
@@ -561,8 +599,8 @@ impl<'a> Builder<'a> {
                 let factor = match rest {
                     None => 1,
                     Some((rp, rq)) => {
-                        let s = Time::between(&w[0].t, &w[1].t);
-                        x.sign_of(&(rp.scale(s.denom()) + rq.scale(s.numer())))
+                        let s = K::Time::between(&w[0].t, &w[1].t);
+                        x.sign_of(&K::Poly::at_time(rp, rq, &s))
                     }
                 };
                 let branch = slope * factor;
@@ -594,29 +632,36 @@ impl<'a> Builder<'a> {
     }
 
     /// The contact is at the hinge: it happens at one time, over a range of orientations.
-    fn add_wall(&mut self, patch: &Patch, curve: CurveId, chart: Chart, rp: &Poly, rq: &Poly) {
-        let c = -Rat::new(rp.coeff(0), rq.coeff(0));
-        let at = |(l0, l1): &(Trig, Trig)| l0.add(&l1.scale(&c));
+    fn add_wall(
+        &mut self,
+        patch: &Patch<K::Num>,
+        curve: CurveId,
+        chart: Chart,
+        rp: &K::Poly,
+        rq: &K::Poly,
+    ) {
+        let c = K::Poly::constant_ratio(rp, rq);
+        let at = |(l0, l1): &(Trig<K::Num>, Trig<K::Num>)| l0.add(&l1.scale(&c));
         let location = [at(&patch.location[0]), at(&patch.location[1])];
         let (mine, theirs) = self.cones_at_hinge(patch, &c);
         let mut breaks = Vec::new();
         self.wedge_breaks(patch, chart, &mut breaks);
         for l in &location {
-            self.plain_breaks(&l.poly(chart), &mut breaks);
+            self.plain_breaks(&poly::<K>(l, chart), &mut breaks);
         }
         // Where a pawl edge lies along an obstacle edge, or along the motion.
         for g in mine.generators() {
             for o in theirs.generators().chain([&self.frame.v]) {
-                let cross = Trig::new(g.cross(o), -g.dot(o), Rat::zero());
-                self.plain_breaks(&cross.poly(chart), &mut breaks);
+                let cross = Trig::new(g.cross(o), g.dot(o).negated(), K::Num::zero());
+                self.plain_breaks(&poly::<K>(&cross, chart), &mut breaks);
             }
         }
         self.seams(&mut breaks);
         breaks.sort_by(|a, b| a.x.cmp(&b.x));
         breaks.dedup_by(|b, a| a.x == b.x);
-        let t = Time::from(c);
+        let t = K::Time::of(c);
         for w in breaks.windows(2) {
-            let s = Algebraic::between(&w[0].x, &w[1].x);
+            let s = K::Root::between(&w[0].x, &w[1].x);
             if !wedge_ok(patch, chart, &s) || location.iter().any(|l| l.value(chart, &s).sign() < 0)
             {
                 continue;
@@ -633,7 +678,7 @@ impl<'a> Builder<'a> {
                 (false, false) => Side::Both,
                 (true, true) => Side::Neither,
             };
-            let end = |b: &Break| End {
+            let end = |b: &Break<K>| End {
                 x: b.x.clone(),
                 t: t.clone(),
             };
@@ -658,7 +703,7 @@ impl<'a> Builder<'a> {
     /// The pawl and the obstacle beside the hinge, at θ = 0, when a wall's contact is made at time
     /// c. Past a corner of the obstacle the hinge may be free on both sides of its edge's line, so
     /// the C-function's sign alone does not tell.
-    fn cones_at_hinge(&self, patch: &Patch, c: &Rat) -> (Cones, Cones) {
+    fn cones_at_hinge(&self, patch: &Patch<K::Num>, c: &K::Num) -> (Cones<K::Num>, Cones<K::Num>) {
         let Contact::Obstacle {
             obstacle,
             kind,
@@ -696,11 +741,11 @@ impl<'a> Builder<'a> {
     }
 
     /// An angular stop: a level at u for the whole phase and a little more.
-    fn add_limit(&mut self, u: &Rat, which: u8) {
+    fn add_limit(&mut self, u: &K::Num, which: u8) {
         let (chart, x) = if u.abs() <= self.one {
             (Chart::Rest, u.clone())
         } else {
-            (Chart::Back, -u.recip())
+            (Chart::Back, self.minus_one.over(u))
         };
         // At the seam the copy at x = −1 serves.
         let (chart, x) = if x == self.one {
@@ -708,16 +753,16 @@ impl<'a> Builder<'a> {
         } else {
             (chart, x)
         };
-        let p = [-u.numer(), u.denom().clone(), Int::zero()];
-        let q = [Int::zero(), Int::zero(), Int::zero()];
+        let p = K::stop(u);
+        let q = [K::zero_coef(), K::zero_coef(), K::zero_coef()];
         let curve = self.curves.len() as CurveId;
-        let rp = Chart::BOTH.map(|c| in_chart(&p, c));
-        let rq = [Poly::zero(), Poly::zero()];
+        let rp = Chart::BOTH.map(|c| in_chart::<K>(&p, c));
+        let rq = [K::Poly::zero(), K::Poly::zero()];
         self.curves.push(Curve { p, q, rp, rq });
-        let x = Algebraic::from(x);
-        let end = |t: Rat| End {
+        let x = K::Root::of(x);
+        let end = |t: K::Num| End {
             x: x.clone(),
-            t: Time::from(t),
+            t: K::Time::of(t),
         };
         self.arcs.push(
             Arc {
@@ -728,7 +773,7 @@ impl<'a> Builder<'a> {
                 shape: Shape::Level,
                 side: if which == 0 { Side::Above } else { Side::Below },
                 lo: end(self.minus_one.clone()),
-                hi: end(&self.frame.duration + &self.one),
+                hi: end(self.frame.duration.plus(&self.one)),
                 t_span: Interval::all(),
                 x_span: Interval::all(),
             }
@@ -739,37 +784,14 @@ impl<'a> Builder<'a> {
 }
 
 /// Whether f₀ and f₁ vanish at a common orientation.
-fn has_common_root(patch: &Patch) -> bool {
+fn has_common_root<R: Scalar>(patch: &Patch<R>) -> bool {
     let (f0, f1) = (&patch.f0, &patch.f1);
     if f1.c.is_zero() && f1.s.is_zero() {
         // Type B: f₁ is a constant; a common factor only if f₀ is one too.
         return f0.c.is_zero() && f0.s.is_zero();
     }
     // Type A: f₁ vanishes at (cos, sin) = ±(−s₁, c₁)/ρ.
-    let cross = &f0.s * &f1.c - &f0.c * &f1.s;
-    cross.square() == f0.k.square() * (f1.c.square() + f1.s.square())
-}
-
-/// P/g and Q/g by one common factor, so that P/Q is unchanged.
-fn reduce(p: &Poly, q: &Poly, g: &Poly) -> (Poly, Poly) {
-    // g is primitive and divides both over the integers (Gauss), so long division is exact.
-    (quotient(p, g), quotient(q, g))
-}
-
-/// p/g by long division, for a primitive divisor.
-fn quotient(p: &Poly, g: &Poly) -> Poly {
-    let (Some(dp), Some(dg)) = (p.degree(), g.degree()) else {
-        return Poly::zero();
-    };
-    let mut rest = p.coeffs().to_vec();
-    let lead = g.coeff(dg);
-    let mut out = vec![Int::zero(); (dp + 1).saturating_sub(dg)];
-    for k in (0..out.len()).rev() {
-        let c = rest[k + dg].div_exact(&lead);
-        for i in 0..=dg {
-            rest[k + i] -= &(&c * &g.coeff(i));
-        }
-        out[k] = c;
-    }
-    Poly::new(out)
+    let cross = f0.s.times(&f1.c).minus(&f0.c.times(&f1.s)).square();
+    let other = f0.k.square().times(&f1.c.square().plus(&f1.s.square()));
+    cross.minus(&other).vanishes_beside(&cross.plus(&other))
 }

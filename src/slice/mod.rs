@@ -14,9 +14,8 @@
 mod arc;
 mod build;
 mod predicates;
-mod time;
 
+pub use crate::kernel::Time;
 pub use arc::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
 pub use build::Slice;
 pub use predicates::{Cross, Germs, Point, cmp_horizontal};
-pub use time::Time;

@@ -1,32 +1,34 @@
 //! The questions that the motion asks of the slice. Everything here is decided exactly; the
 //! enclosures that come first only save work.
 
-use super::{Arc, ArcId, CurveId, Shape, Slice, Time};
+use super::{Arc, ArcId, CurveId, Shape, Slice};
 use crate::contact::Chart;
-use crate::number::{Algebraic, Int, Interval, Poly, Rat};
+use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
+use crate::number::Interval;
+use crate::number::filter::{self, Stage};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// Where two curves cross.
 #[derive(Clone, Debug)]
-pub struct Cross {
+pub struct Cross<K: Kernel = Filtered> {
     /// Chart position.
-    pub x: Algebraic,
+    pub x: K::Root,
     /// When.
-    pub t: Time,
+    pub t: K::Time,
 }
 
-pub(super) type CrossCache = HashMap<(CurveId, CurveId, Chart), std::sync::Arc<[Cross]>>;
+pub(super) type CrossCache<K> = HashMap<(CurveId, CurveId, Chart), std::sync::Arc<[Cross<K>]>>;
 
 /// A point of the cylinder whose time is a rational number or a rational function of its x.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct Point<K: Kernel = Filtered> {
     /// The chart x is meant in.
     pub chart: Chart,
     /// Chart position.
-    pub x: Algebraic,
+    pub x: K::Root,
     /// When.
-    pub t: Time,
+    pub t: K::Time,
     /// Curves known to pass through it.
     pub on: Vec<CurveId>,
 }
@@ -44,23 +46,12 @@ pub struct Germs {
     pub down: bool,
 }
 
-fn proportional(a: &Poly, b: &Poly) -> Option<(Int, Int)> {
-    let d = a.degree()?;
-    if b.degree() != Some(d) {
-        return None;
-    }
-    let (ca, cb) = (a.coeff(d), b.coeff(d));
-    (0..d)
-        .all(|i| a.coeff(i) * &cb == b.coeff(i) * &ca)
-        .then_some((ca, cb))
-}
-
-impl Slice {
+impl<K: Kernel> Slice<K> {
     /// Where the graph parts of two different curves cross in a chart, ascending in x.
     ///
     /// P₁Q₂ − P₂Q₁ is a quartic; where Q₁ and Q₂ are proportional (two type B contacts, or two
     /// obstacle vertices against one pawl edge) only a quadratic. Computed once a pair.
-    pub fn crossings(&self, a: CurveId, b: CurveId, chart: Chart) -> std::sync::Arc<[Cross]> {
+    pub fn crossings(&self, a: CurveId, b: CurveId, chart: Chart) -> std::sync::Arc<[Cross<K>]> {
         let key = (a.min(b), a.max(b), chart);
         let lock = || self.crossings.lock().unwrap_or_else(|e| e.into_inner());
         if let Some(c) = lock().get(&key) {
@@ -68,41 +59,58 @@ impl Slice {
         }
         let (p, q) = self.curve(key.0).reduced(chart);
         let (p2, q2) = self.curve(key.1).reduced(chart);
-        let h = match proportional(q, q2) {
-            Some((c, c2)) => p.scale(&c2) - p2.scale(&c),
-            None => p * q2 - p2 * q,
-        };
-        let list: std::sync::Arc<[Cross]> = if h.is_zero() {
+        let h = K::Poly::crossing(p, q, p2, q2);
+        let list: std::sync::Arc<[Cross<K>]> = if h.is_zero() {
             std::sync::Arc::new([])
         } else {
-            h.real_roots_in(&Rat::from(-1), &Rat::one())
+            let mut roots = h.chart_roots();
+            roots.retain(|x| x.sign_of(q) != 0);
+            let mut list: Vec<Cross<K>> = roots
                 .into_iter()
-                .filter(|x| x.sign_of(q) != 0)
                 .map(|x| Cross {
-                    t: Time::ratio(&x, -p, q.clone()),
+                    t: K::Time::ratio(&x, p.negated(), q.clone()),
                     x,
                 })
-                .collect()
+                .collect();
+            self.name_crossings(key, &mut list);
+            list.into()
         };
         lock().insert(key, list.clone());
         list
     }
 
+    /// Gives crossings at points that both curves pass through by name the handles of those: such
+    /// a point is a crossing, so where only one crossing can be it, it is that one.
+    fn name_crossings(&self, (a, b, chart): (CurveId, CurveId, Chart), list: &mut [Cross<K>]) {
+        let theirs = &self.named[b as usize];
+        for p in self.named[a as usize].iter().filter(|p| p.chart == chart) {
+            if !theirs.iter().any(|o| o.x.same(&p.x)) {
+                continue;
+            }
+            let at = p.x.interval();
+            let mut near = list.iter_mut().filter(|c| c.x.interval().meets(&at));
+            if let (Some(c), None) = (near.next(), near.next()) {
+                c.x = p.x.clone();
+                c.t = p.t.clone();
+            }
+        }
+    }
+
     /// When a graph arc's curve passes position x (where its denominator does not vanish).
-    pub fn time_at(&self, arc: &Arc, x: &Algebraic) -> Time {
+    pub fn time_at(&self, arc: &Arc<K>, x: &K::Root) -> K::Time {
         let (p, q) = self.curve(arc.curve).reduced(arc.chart);
-        Time::ratio(x, -p, q.clone())
+        K::Time::ratio(x, p.negated(), q.clone())
     }
 
     /// The position of an arc at a rational time within its span. None off its span, and on walls.
-    pub fn height_at(&self, arc: &Arc, t: &Rat) -> Option<Algebraic> {
+    pub fn height_at(&self, arc: &Arc<K>, t: &K::Num) -> Option<K::Root> {
         match arc.shape {
             Shape::Wall => None,
             Shape::Level => Some(arc.lo.x.clone()),
             Shape::Graph { .. } => {
                 let (p, q) = self.curve(arc.curve).reduced(arc.chart);
-                let f = p.scale(t.denom()) + q.scale(t.numer());
-                f.real_roots_in(&Rat::from(-1), &Rat::one())
+                K::Poly::at_time(p, q, t)
+                    .chart_roots()
                     .into_iter()
                     .find(|x| arc.spans_x(x))
             }
@@ -110,7 +118,7 @@ impl Slice {
     }
 
     /// Whether the closed arc holds the point.
-    pub fn holds(&self, arc: &Arc, z: &Point) -> bool {
+    pub fn holds(&self, arc: &Arc<K>, z: &Point<K>) -> bool {
         if arc.chart != z.chart
             || !arc.t_span.meets(&z.t.interval())
             || !arc.x_span.meets(&z.x.interval())
@@ -121,19 +129,33 @@ impl Slice {
             Shape::Level => arc.lo.x == z.x && arc.lo.t <= z.t && z.t <= arc.hi.t,
             Shape::Wall => arc.lo.t == z.t && arc.spans_x(&z.x),
             Shape::Graph { .. } => {
-                arc.spans_x(&z.x) && (z.on.contains(&arc.curve) || self.passes(arc, z))
+                let is_end = |e: &super::End<K>| e.x.same(&z.x) && e.t.same(&z.t);
+                if is_end(&arc.lo) || is_end(&arc.hi) {
+                    filter::settled(Stage::Name);
+                    return true;
+                }
+                arc.spans_x(&z.x) && (self.lies_on(arc, z) || self.passes(arc, z))
             }
         }
     }
 
-    fn passes(&self, arc: &Arc, z: &Point) -> bool {
+    /// Whether the point is known to lie on the arc's curve.
+    fn lies_on(&self, arc: &Arc<K>, z: &Point<K>) -> bool {
+        let known = z.on.contains(&arc.curve);
+        if known {
+            filter::settled(Stage::Name);
+        }
+        known
+    }
+
+    fn passes(&self, arc: &Arc<K>, z: &Point<K>) -> bool {
         let (p, q) = self.curve(arc.curve).reduced(arc.chart);
         let (num, den) = z.t.parts();
-        z.x.sign_of(&(p * den + q * num)) == 0
+        z.x.sign_of(&p.times(&den).plus(&q.times(&num))) == 0
     }
 
     /// How an arc leaves a point that it holds.
-    pub fn germs(&self, arc: &Arc, z: &Point) -> Germs {
+    pub fn germs(&self, arc: &Arc<K>, z: &Point<K>) -> Germs {
         match arc.shape {
             Shape::Wall => Germs {
                 left: false,
@@ -165,7 +187,7 @@ impl Slice {
     }
 
     /// dx/dt of a graph arc at a point on it, as an enclosure.
-    fn slope(&self, arc: &Arc, z: &Point) -> Interval {
+    fn slope(&self, arc: &Arc<K>, z: &Point<K>) -> Interval {
         if arc.shape == Shape::Level {
             return Interval::point(0.0);
         }
@@ -177,21 +199,21 @@ impl Slice {
 
     /// Which of two arcs through z (in one chart, neither a wall) is higher just after z.
     /// `Equal` means that they coincide there.
-    pub fn cmp_after(&self, a: ArcId, b: ArcId, z: &Point) -> Ordering {
+    pub fn cmp_after(&self, a: ArcId, b: ArcId, z: &Point<K>) -> Ordering {
         self.cmp_beside(a, b, z, true)
     }
 
     /// Which of two arcs through z is higher just before z.
-    pub fn cmp_before(&self, a: ArcId, b: ArcId, z: &Point) -> Ordering {
+    pub fn cmp_before(&self, a: ArcId, b: ArcId, z: &Point<K>) -> Ordering {
         self.cmp_beside(a, b, z, false)
     }
 
-    fn cmp_beside(&self, ia: ArcId, ib: ArcId, z: &Point, after: bool) -> Ordering {
+    fn cmp_beside(&self, ia: ArcId, ib: ArcId, z: &Point<K>, after: bool) -> Ordering {
         let (a, b) = (self.arc(ia), self.arc(ib));
         if ia == ib {
             return Ordering::Equal;
         }
-        let against_level = |arc: &Arc| cmp_horizontal(arc, after);
+        let against_level = |arc: &Arc<K>| cmp_horizontal(arc, after);
         match (a.shape, b.shape) {
             (_, Shape::Level) => return against_level(a),
             (Shape::Level, _) => return against_level(b).reverse(),
@@ -223,7 +245,7 @@ impl Slice {
                     next = c.t;
                 }
             }
-            Time::between(&z.t, &next)
+            K::Time::between(&z.t, &next)
         } else {
             let mut last = a.start().t.clone().max(b.start().t.clone());
             for c in self.shared_crossings(a, b) {
@@ -231,13 +253,13 @@ impl Slice {
                     last = c.t;
                 }
             }
-            Time::between(&last, &z.t)
+            K::Time::between(&last, &z.t)
         };
         self.cmp_heights(a, b, &t)
     }
 
     /// Crossings of two graph arcs' curves that lie on both arcs.
-    fn shared_crossings(&self, a: &Arc, b: &Arc) -> Vec<Cross> {
+    fn shared_crossings(&self, a: &Arc<K>, b: &Arc<K>) -> Vec<Cross<K>> {
         self.crossings(a.curve, b.curve, a.chart)
             .iter()
             .filter(|c| a.spans_x(&c.x) && b.spans_x(&c.x))
@@ -245,18 +267,18 @@ impl Slice {
             .collect()
     }
 
-    fn cmp_heights(&self, a: &Arc, b: &Arc, t: &Rat) -> Ordering {
+    fn cmp_heights(&self, a: &Arc<K>, b: &Arc<K>, t: &K::Num) -> Ordering {
         match (self.height_at(a, t), self.height_at(b, t)) {
             (Some(x), Some(y)) => x.cmp(&y),
             _ => {
-                debug_assert!(false, "both arcs span the time");
+                debug_assert!(!K::CERTIFIED, "both arcs span the time");
                 Ordering::Equal
             }
         }
     }
 
     /// Whether an arc exists just after t (walls never do).
-    pub fn alive_after(&self, arc: &Arc, t: &Time) -> bool {
+    pub fn alive_after(&self, arc: &Arc<K>, t: &K::Time) -> bool {
         !matches!(arc.shape, Shape::Wall)
             && arc.t_span.hi >= t.interval().lo
             && arc.t_span.lo <= t.interval().hi
@@ -265,7 +287,7 @@ impl Slice {
     }
 
     /// The position of an arc just after t against a constant x; `Equal` only for a level there.
-    pub fn cmp_after_const(&self, arc: &Arc, t: &Time, x: &Algebraic) -> Ordering {
+    pub fn cmp_after_const(&self, arc: &Arc<K>, t: &K::Time, x: &K::Root) -> Ordering {
         let xi = x.interval();
         if xi.below(&arc.x_span) {
             return Ordering::Greater;
@@ -293,7 +315,7 @@ impl Slice {
     }
 
     /// Which of two arcs of one chart, both alive just after t, is higher there.
-    pub fn cmp_heights_after(&self, ia: ArcId, ib: ArcId, t: &Time) -> Ordering {
+    pub fn cmp_heights_after(&self, ia: ArcId, ib: ArcId, t: &K::Time) -> Ordering {
         let (a, b) = (self.arc(ia), self.arc(ib));
         if a.x_span.below(&b.x_span) {
             return Ordering::Less;
@@ -319,7 +341,7 @@ impl Slice {
                 next = c.t;
             }
         }
-        self.cmp_heights(a, b, &Time::between(t, &next))
+        self.cmp_heights(a, b, &K::Time::between(t, &next))
     }
 
     /// Whether two arcs coincide wherever both exist: one curve and branch, or levels at one x.
@@ -339,7 +361,13 @@ impl Slice {
 
     /// The earliest point after `from` and not after `until` at which the arc `ia` meets the arc
     /// `ib` anew, ends or begins to coincide with it. `None` if there is none.
-    pub fn first_meeting(&self, ia: ArcId, ib: ArcId, from: &Time, until: &Time) -> Option<Point> {
+    pub fn first_meeting(
+        &self,
+        ia: ArcId,
+        ib: ArcId,
+        from: &K::Time,
+        until: &K::Time,
+    ) -> Option<Point<K>> {
         let (a, b) = (self.arc(ia), self.arc(ib));
         if !a.t_span.meets(&b.t_span)
             || !a.x_span.meets(&b.x_span)
@@ -348,8 +376,8 @@ impl Slice {
         {
             return None;
         }
-        let later = |t: &Time| *t > *from && *t <= *until;
-        let point = |x: &Algebraic, t: Time, on: Vec<CurveId>| Point {
+        let later = |t: &K::Time| *t > *from && *t <= *until;
+        let point = |x: &K::Root, t: K::Time, on: Vec<CurveId>| Point {
             chart: a.chart,
             x: x.clone(),
             t,
@@ -368,7 +396,7 @@ impl Slice {
                 if a.curve == b.curve {
                     return None; // they can only meet in a's own end
                 }
-                let mut best: Option<Point> = None;
+                let mut best: Option<Point<K>> = None;
                 for c in self.crossings(a.curve, b.curve, a.chart).iter() {
                     let i = c.t.interval();
                     if i.hi < from.interval().lo || i.lo > until.interval().hi {
@@ -406,7 +434,7 @@ impl Slice {
                 if !later(&t) || a.start().t > t || t > a.end().t {
                     return None;
                 }
-                let x = self.height_at(a, c)?;
+                let x = self.height_at(a, &c)?;
                 b.spans_x(&x).then(|| point(&x, t, vec![a.curve]))
             }
             (Shape::Level, Shape::Wall) => {
@@ -420,7 +448,7 @@ impl Slice {
 }
 
 /// Which side of the horizontal through a point on it an arc lies on just after (or before).
-pub fn cmp_horizontal(arc: &Arc, after: bool) -> Ordering {
+pub fn cmp_horizontal<K: Kernel>(arc: &Arc<K>, after: bool) -> Ordering {
     match arc.shape {
         Shape::Graph { rising } if rising == after => Ordering::Greater,
         Shape::Graph { .. } => Ordering::Less,
@@ -428,9 +456,9 @@ pub fn cmp_horizontal(arc: &Arc, after: bool) -> Ordering {
     }
 }
 
-impl Arc {
+impl<K: Kernel> Arc<K> {
     /// Whether x lies between its ends, ends included.
-    pub fn spans_x(&self, x: &Algebraic) -> bool {
+    pub fn spans_x(&self, x: &K::Root) -> bool {
         let i = x.interval();
         if i.below(&self.x_span) || self.x_span.below(&i) {
             return false;

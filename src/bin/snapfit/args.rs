@@ -33,10 +33,16 @@ pub(crate) enum Verb {
     Render(Render),
     /// The face of bare arcs that holds the start
     Face(snapfit::face::Args),
+    /// Flex a structure of loosely joined bodies as far as it goes (PuzzleFlex)
+    Flex(crate::flex::FlexArgs),
+    /// Write a structure of one of the paper's families
+    Generate(crate::flex::GenerateArgs),
     /// Solve a linear program exactly: status, objective and certificate
     Lp(snapfit::lp::cli::LpArgs),
     /// Check a linear program's certificate with code of its own
     Verify(snapfit::lp::cli::VerifyArgs),
+    /// Speed against accuracy over the arithmetics: table, JSON and plot
+    Trade(super::trade::Trade),
     /// Print the JSON Schema of a file format
     Schema(Schema),
 }
@@ -141,8 +147,17 @@ pub(crate) struct Common {
 #[derive(Args)]
 pub(crate) struct Engine {
     /// Which numbers decide
-    #[arg(long, value_enum, default_value = "exact")]
+    #[arg(long, value_enum, default_value = "filtered")]
     pub(crate) arithmetic: Arithmetic,
+    /// With f64: zeros nearer than this are one
+    #[arg(long, value_name = "DISTANCE", value_parser = tolerance, default_value = "1e-9")]
+    pub(crate) tolerance: f64,
+    /// With f64: which zeros are taken for one
+    #[arg(long, value_enum, default_value = "names")]
+    pub(crate) identify: Identify,
+    /// Which library carries long integers
+    #[arg(long, value_enum, default_value = "num")]
+    pub(crate) backend: Backend,
     /// Which algorithm runs
     #[arg(long, value_enum, default_value = "naive")]
     pub(crate) method: Method,
@@ -151,7 +166,16 @@ pub(crate) struct Engine {
     pub(crate) time_limit: Option<Duration>,
 }
 
-fn seconds(text: &str) -> Result<Duration, String> {
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
+    let t: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
+    if t.is_finite() && t >= 0.0 {
+        Ok(t)
+    } else {
+        Err("expected a number that is not negative".to_owned())
+    }
+}
+
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
         .map_err(|_| "expected a number of seconds".to_owned())?;
@@ -160,12 +184,30 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Arithmetic {
-    /// Algebraic numbers throughout
+    /// Exact numbers only: the reference, slow
     Exact,
-    /// Doubles first, exact where they cannot tell (not built yet)
+    /// Certified double enclosures first, exact numbers where they cannot tell; the same answers
     Filtered,
-    /// Doubles with a tolerance (not built yet)
+    /// Doubles with a tolerance: fast, and may be wrong
     F64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Identify {
+    /// None
+    None,
+    /// Those nearer than the tolerance
+    Times,
+    /// Those nearer than the tolerance, and those that bear one name
+    Names,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Backend {
+    /// num-bigint
+    Num,
+    /// GMP by rug, where it is built in
+    Rug,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -188,6 +230,8 @@ pub(crate) enum Format {
 pub(crate) enum Name {
     /// The scene file
     Scene,
+    /// The structure file
+    Structure,
     /// The result of `simulate`
     Result,
 }

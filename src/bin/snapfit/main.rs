@@ -5,8 +5,10 @@
 //! given, 4 decided but not as expected, 1 a bug.
 
 mod args;
+mod flex;
 mod output;
 mod progress;
+mod trade;
 
 use args::{
     Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
@@ -15,7 +17,8 @@ use args::{
 use clap::Parser;
 use clap::error::ErrorKind;
 use snapfit::analysis::{self, Ask, Verdict};
-use snapfit::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use snapfit::kernel::{FloatOptions, Identify};
+use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
 use snapfit::report::{picture, pretty, summary};
 use snapfit::scene::{self, Diagnostic, Rendering, SceneFile};
@@ -69,11 +72,15 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
             output::write(None, &(text + "\n"))?;
             Ok(DECIDED)
         }
-        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Flex(args) => flex::run_flex(args),
+        Verb::Generate(args) => flex::run_generate(args),
+        Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
+        Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
+                Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
             };
             let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
@@ -159,7 +166,11 @@ fn run_forces(args: &Forces) -> Result<u8, Failure> {
 }
 
 fn run_check(args: &Check) -> Result<u8, Failure> {
-    let file = read(&args.common)?;
+    let (name, bytes) = read_bytes(&args.common)?;
+    if snapfit::flex::is_structure(&name, &bytes) {
+        return flex::run_check(&args.common, &name, &bytes, args.format);
+    }
+    let file = parse(&args.common, &name, &bytes)?;
     let report = scene::check(&file);
     let text = match format_of(args.format, &args.common) {
         Format::Json => {
@@ -194,6 +205,12 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
 
 /// Reads the scene that is asked for; `-` is standard input.
 fn read(common: &Common) -> Result<SceneFile, Failure> {
+    let (name, bytes) = read_bytes(common)?;
+    parse(common, &name, &bytes)
+}
+
+/// The bytes of the file that is asked for, and its name for messages.
+fn read_bytes(common: &Common) -> Result<(String, Vec<u8>), Failure> {
     output::spare_input(&common.file, common.out.as_deref())?;
     let mut bytes = Vec::new();
     let (name, done) = if common.file == Path::new("-") {
@@ -206,6 +223,11 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
         (name, std::fs::read(&common.file).map(|b| bytes = b))
     };
     done.map_err(|e| format!("{name}: {e}"))?;
+    Ok((name, bytes))
+}
+
+/// The overrides of `--set`.
+fn overrides(common: &Common) -> Result<Vec<(&str, &str)>, Failure> {
     let mut overrides = Vec::new();
     for set in &common.set {
         match set.split_once('=') {
@@ -213,8 +235,12 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
             None => return Err(format!("--set {set}: expected NAME=VALUE").into()),
         }
     }
-    let file = scene::read_scene_bytes(&name, &bytes, &overrides).map_err(Failure::Scene)?;
-    Ok(file)
+    Ok(overrides)
+}
+
+fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<SceneFile, Failure> {
+    let overrides = overrides(common)?;
+    scene::read_scene_bytes(name, bytes, &overrides).map_err(Failure::Scene)
 }
 
 fn simulated(
@@ -240,6 +266,7 @@ fn simulated(
             .time_limit
             .and_then(|limit| Instant::now().checked_add(limit)),
         progress: Some(&tell),
+        arithmetic: arithmetic(engine),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
@@ -262,19 +289,37 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
             "--{option} {asked} is not built yet; there is: {built}"
         ))
     };
-    match engine.arithmetic {
-        Arithmetic::Exact => {}
-        Arithmetic::Filtered => return Err(unbuilt("arithmetic", "filtered", "exact")),
-        Arithmetic::F64 => return Err(unbuilt("arithmetic", "f64", "exact")),
+    let backend = match engine.backend {
+        args::Backend::Num => snapfit::number::Backend::Num,
+        args::Backend::Rug => snapfit::number::Backend::Rug,
+    };
+    if !snapfit::number::set_backend(backend) {
+        return Err(unbuilt("backend", backend.name(), "num"));
     }
     match engine.method {
         Method::Naive => {}
         Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
     }
     Ok(Provenance {
-        arithmetic: "exact",
+        arithmetic: arithmetic(engine).name(),
         method: "naive",
     })
+}
+
+/// The arithmetic that the options ask for.
+fn arithmetic(engine: &Engine) -> motion::Arithmetic {
+    match engine.arithmetic {
+        Arithmetic::Exact => motion::Arithmetic::Exact,
+        Arithmetic::Filtered => motion::Arithmetic::Filtered,
+        Arithmetic::F64 => motion::Arithmetic::F64(FloatOptions {
+            tolerance: engine.tolerance,
+            identify: match engine.identify {
+                args::Identify::None => Identify::None,
+                args::Identify::Times => Identify::Times,
+                args::Identify::Names => Identify::Names,
+            },
+        }),
+    }
 }
 
 fn status(trajectory: &Trajectory) -> u8 {

@@ -12,7 +12,9 @@ use crate::lp::lu::{Lu, factorise};
 /// Pivots between two factorisations.
 pub(crate) const REFRESH: usize = 64;
 /// Feasibility tolerances of values and of reduced costs: first, and for the finish.
-const TOLERANCES: [f64; 2] = [1e-9, 1e-12];
+const TOLERANCES: [f64; 3] = [1e-7, 1e-9, 1e-12];
+/// Relative size of the random widening of bounds.
+const WIDTH: f64 = 1e-6;
 /// Smallest pivot.
 pub(crate) const PIVOT: f64 = 1e-7;
 
@@ -50,6 +52,10 @@ pub(crate) struct Engine<'a> {
     work: Vec<f64>,
     pub(crate) iterations: u64,
     random: u64,
+    /// The basic variable whose row seemed to prove the program infeasible.
+    pub(crate) blame: Option<usize>,
+    /// Whether the bounds of what enters are widened.
+    widening: bool,
     pub(crate) tolerance: f64,
     /// Iterations after which a run gives up.
     pub(crate) most: u64,
@@ -74,6 +80,8 @@ impl<'a> Engine<'a> {
             work: Vec::new(),
             iterations: 0,
             random: 0x1234_5678_9abc_def1,
+            blame: None,
+            widening: false,
             tolerance: TOLERANCES[0],
             most: u64::MAX,
         };
@@ -263,9 +271,11 @@ impl<'a> Engine<'a> {
             for (j, a) in p.rows.line(i) {
                 if alpha[j] == 0.0 {
                     touched.push(j as u32);
-                    alpha[j] = 1e-300;
                 }
                 alpha[j] += r * a;
+                if alpha[j] == 0.0 {
+                    alpha[j] = 1e-300; // cancelled, but listed already
+                }
             }
             alpha[p.n + i] = -r;
             touched.push((p.n + i) as u32);
@@ -276,6 +286,9 @@ impl<'a> Engine<'a> {
     pub(crate) fn exchange(&mut self, position: usize, entering: usize, column: &[f64]) {
         self.head[position] = entering;
         self.status[entering] = Status::Basic;
+        if self.widening {
+            self.widen(entering);
+        }
         let entries = column
             .iter()
             .enumerate()
@@ -311,6 +324,15 @@ impl<'a> Engine<'a> {
         pairs.map(|(c, x)| c * x).sum()
     }
 
+    /// Prices of the rows for the program's own costs.
+    pub(crate) fn prices(&mut self) -> Vec<f64> {
+        let costs = &self.program.cost;
+        let cost = |&v: &usize| costs.get(v).copied().unwrap_or(0.0);
+        let mut y: Vec<f64> = self.head.iter().map(cost).collect();
+        self.btran(&mut y);
+        y
+    }
+
     /// How far a basic variable is outside: negative below, positive above.
     pub(crate) fn excess(&self, v: usize) -> f64 {
         let x = self.x[v];
@@ -338,6 +360,7 @@ impl<'a> Engine<'a> {
 
     /// The program's own costs and bounds, and everything that follows from the basis.
     fn restore(&mut self) {
+        self.widening = false;
         self.cost.truncate(self.program.n);
         self.cost.copy_from_slice(&self.program.cost);
         self.cost.resize(self.program.n + self.program.m, 0.0);
@@ -348,18 +371,25 @@ impl<'a> Engine<'a> {
         self.compute_reduced();
     }
 
-    /// Widens the bounds of the basic variables by random amounts, against stalling. The
-    /// others stay where they are, so that the values keep.
+    /// Widens the bounds of the basic variables by random amounts, against stalling, and from now
+    /// on those of every variable that enters. The others stay where they are, so that the values
+    /// keep.
     pub(crate) fn perturb_bounds(&mut self) {
+        self.widening = true;
         for k in 0..self.head.len() {
-            let v = self.head[k];
-            if self.program.lower[v] == self.program.upper[v] {
-                continue;
-            }
-            let (a, b) = (self.next_random(), self.next_random());
-            self.lower[v] -= (0.5 + 0.5 * a) * 1e-6 * (1.0 + self.lower[v].abs());
-            self.upper[v] += (0.5 + 0.5 * b) * 1e-6 * (1.0 + self.upper[v].abs());
+            self.widen(self.head[k]);
         }
+    }
+
+    fn widen(&mut self, v: usize) {
+        let p = self.program;
+        let moved = self.lower[v] != p.lower[v] || self.upper[v] != p.upper[v];
+        if moved || p.lower[v] == p.upper[v] {
+            return;
+        }
+        let (a, b) = (self.next_random(), self.next_random());
+        self.lower[v] -= (0.5 + 0.5 * a) * WIDTH * (1.0 + self.lower[v].abs());
+        self.upper[v] += (0.5 + 0.5 * b) * WIDTH * (1.0 + self.upper[v].abs());
     }
 
     /// Dual and primal in turn until both agree that the basis is optimal, or give up.
@@ -371,13 +401,15 @@ impl<'a> Engine<'a> {
             return Ok(ending);
         }
         // The finish may lose itself in noise: then the basis stays as it was.
-        let before = (self.status.clone(), self.head.clone());
         let most = self.most;
-        self.tolerance = TOLERANCES[1];
-        self.most = self.iterations + 100 + self.program.m as u64 / 20;
-        if self.rounds(false, 2, budget)? == Ending::Stuck {
-            (self.status, self.head) = before;
-            self.restore();
+        for tolerance in &TOLERANCES[1..] {
+            let before = (self.status.clone(), self.head.clone());
+            self.tolerance = *tolerance;
+            self.most = self.iterations + 100 + self.program.m as u64 / 20;
+            if self.rounds(false, 2, budget)? == Ending::Stuck {
+                (self.status, self.head) = before;
+                self.restore();
+            }
         }
         self.most = most;
         Ok(ending)

@@ -3,7 +3,12 @@
 
 use super::engine::{Ending, Engine, PIVOT};
 use crate::lp::basis::Status;
-use crate::lp::budget::{Budget, Exhausted};
+use crate::lp::budget::{Budget, Exhausted, Stage};
+
+/// Infeasibility at which the method has lost its way.
+const LOST: f64 = 1e-2;
+/// Factor by which the weight of a column may fall short of its true length squared.
+const UNDERRATED: f64 = 100.0;
 
 impl Engine<'_> {
     /// Runs until no reduced cost is attractive.
@@ -23,6 +28,10 @@ impl Engine<'_> {
                 self.compute_values();
                 self.compute_reduced();
                 budget.check()?;
+                budget.report(Stage::Simplex, self.iterations);
+                if self.infeasibility() > LOST {
+                    return Ok(Ending::Optimal); // the dual method's turn
+                }
             }
             if stalled > 20 && !perturbed {
                 self.perturb_bounds();
@@ -63,6 +72,12 @@ impl Engine<'_> {
             };
             let sign = if self.d[q] < 0.0 { 1.0 } else { -1.0 };
             let column = self.column(q);
+            // A weight that turns out far too small would let an ill-conditioned column in.
+            let length = 1.0 + column.iter().map(|a| a * a).sum::<f64>();
+            if length > UNDERRATED * weights[q] {
+                weights[q] = length;
+                continue;
+            }
             // First pass: the longest step that stays within the tolerance.
             let slack = |v: usize, rate: f64| {
                 let room = if rate > 0.0 {
@@ -133,6 +148,12 @@ impl Engine<'_> {
             self.pivot_row(&rho, &mut alpha, &mut touched);
             let out = self.head[r];
             let pivot = column[r];
+            if (pivot - alpha[q]).abs() > 1e-6 * (1.0 + pivot.abs()) && !self.fresh() {
+                self.refactor();
+                self.compute_values();
+                self.compute_reduced();
+                continue;
+            }
             let dual_step = self.d[q] / pivot;
             let reference = weights[q].max(1.0);
             for &v in &touched {

@@ -15,6 +15,11 @@ pub(crate) struct Proposal {
     pub(crate) basis: Basis,
     pub(crate) iterations: u64,
     pub(crate) ending: Ending,
+    /// Where the program seemed infeasible, the basic variable that cannot be repaired.
+    pub(crate) blame: Option<usize>,
+    /// Values of the model's columns, prices of its rows; to be taken for what they are.
+    pub(crate) point: Vec<f64>,
+    pub(crate) prices: Vec<f64>,
     /// The objective as minimised, without the model's constant.
     pub(crate) objective: f64,
 }
@@ -24,8 +29,8 @@ const LARGE: usize = 33_000;
 /// The same for programs that are dualised, where rows abound.
 const LARGE_DUALISED: usize = 2_500;
 
-/// Proposes a basis for the problem.
-pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
+/// Proposes a basis for the problem, from a given one if there is one.
+pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget) -> Proposal {
     let direct = Program::new(problem);
     let program = direct.dual().unwrap_or_else(|| direct.clone());
     let entries = direct.columns.index.len();
@@ -36,12 +41,20 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
             LARGE
         };
     let mut iterations = 0;
-    let mut best: Option<(Vec<Status>, Ending, f64)> = None;
-    let mut take = |engine: &Engine<'_>, ending: Result<Ending, Exhausted>| {
+    let mut best: Option<(Vec<Status>, Ending, f64, Option<usize>)> = None;
+    let mut point = (Vec::new(), Vec::new());
+    let mut take = |engine: &mut Engine<'_>, ending: Result<Ending, Exhausted>| {
         iterations += engine.iterations;
         let ending = ending.unwrap_or(Ending::Stuck);
         if best.is_none() || ending != Ending::Stuck {
-            best = Some((engine.status.clone(), ending, engine.objective()));
+            best = Some((
+                engine.status.clone(),
+                ending,
+                engine.objective(),
+                engine.blame,
+            ));
+            let prices = engine.prices();
+            point = program.unscaled(problem, &engine.x[..program.n], &prices);
         }
         ending != Ending::Stuck
     };
@@ -54,16 +67,26 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     };
     let sizes = (program.n + program.m) as u64;
     let mut done = false;
-    if large && let Some(mut engine) = from_interior(1.0) {
-        engine.most = 2 * sizes + 1000;
+    if let Some(basis) = start {
+        let mut engine = Engine::new(&program, program.statuses(problem, basis));
+        // A start that needs more than this was none.
+        engine.most = 500 + program.m as u64 / 2;
         let ending = engine.optimise(false, budget);
-        done = take(&engine, ending);
+        done = take(&mut engine, ending);
+    }
+    if !done
+        && large
+        && let Some(mut engine) = from_interior(1.0)
+    {
+        engine.most = program.m as u64 + 1000;
+        let ending = engine.optimise(false, budget);
+        done = take(&mut engine, ending);
     }
     if !done {
         let mut engine = Engine::slack(&program);
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(true, budget);
-        done = take(&engine, ending);
+        done = take(&mut engine, ending);
     }
     if !done
         && !large
@@ -71,13 +94,22 @@ pub(crate) fn propose(problem: &Problem, budget: &Budget) -> Proposal {
     {
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(false, budget);
-        take(&engine, ending);
+        take(&mut engine, ending);
     }
-    let (status, ending, objective) =
-        best.unwrap_or_else(|| (Engine::slack(&program).status, Ending::Stuck, f64::NAN));
+    let (status, ending, objective, blame) = best.unwrap_or_else(|| {
+        (
+            Engine::slack(&program).status,
+            Ending::Stuck,
+            f64::NAN,
+            None,
+        )
+    });
     Proposal {
         basis: program.basis(problem, &status),
         iterations,
+        point: point.0,
+        prices: point.1,
+        blame: blame.filter(|_| ending == Ending::Infeasible && !program.dualised),
         ending: match ending {
             // What the dual says of the dual.
             Ending::Infeasible | Ending::Unbounded if program.dualised => Ending::Stuck,

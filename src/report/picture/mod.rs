@@ -9,7 +9,7 @@ mod names;
 mod panels;
 mod plot;
 mod stage;
-mod svg;
+pub(crate) mod svg;
 
 use super::json::ResultDocument;
 use super::words::{headline, reason};

@@ -55,7 +55,7 @@ pub fn engine(scene: &Scene) -> Result<Trajectory, String> {
             scene,
             &Options {
                 deadline: Some(Instant::now() + Duration::from_secs(20)),
-                progress: None,
+                ..Options::default()
             },
         )
     });

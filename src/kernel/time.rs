@@ -1,3 +1,4 @@
+use crate::number::filter::{self, Stage};
 use crate::number::{Algebraic, Int, Interval, Poly, Rat};
 use std::cmp::Ordering;
 use std::sync::{Arc, OnceLock};
@@ -74,9 +75,20 @@ impl Time {
             }
         }
     }
-    /// A certified enclosure.
+    /// A certified enclosure; the whole line where the filter is off.
     pub fn interval(&self) -> Interval {
-        self.0.interval
+        if filter::on() {
+            self.0.interval
+        } else {
+            Interval::all()
+        }
+    }
+    /// The same instant, with an enclosure also if it was made while the filter was off.
+    pub(super) fn renewed(&self) -> Time {
+        match &self.0.form {
+            Form::Rational(r) => Time::from(r.clone()),
+            Form::Ratio { x, num, den } => Time::ratio(x, num.clone(), den.clone()),
+        }
     }
     /// The rational value, where it is known to be rational without work.
     pub fn as_rat(&self) -> Option<&Rat> {
@@ -111,10 +123,12 @@ impl Time {
         match &self.0.form {
             Form::Rational(s) => s.cmp(r),
             Form::Ratio { .. } => {
-                let i = r.interval();
-                if self.0.interval.below(&i) {
+                let (t, i) = (self.interval(), r.interval());
+                if t.below(&i) {
+                    filter::settled(Stage::Double);
                     Ordering::Less
-                } else if i.below(&self.0.interval) {
+                } else if i.below(&t) {
+                    filter::settled(Stage::Double);
                     Ordering::Greater
                 } else {
                     self.exact().cmp_rat(r)
@@ -136,7 +150,7 @@ impl Time {
 impl From<Rat> for Time {
     fn from(r: Rat) -> Time {
         Time(Arc::new(Inner {
-            interval: r.interval(),
+            interval: r.tight(),
             form: Form::Rational(r),
             exact: OnceLock::new(),
         }))
@@ -157,16 +171,29 @@ impl PartialOrd for Time {
 impl Ord for Time {
     fn cmp(&self, o: &Time) -> Ordering {
         if self.same_handle(o) {
+            filter::settled(Stage::Name);
             return Ordering::Equal;
         }
-        if self.0.interval.below(&o.0.interval) {
+        let (x, y) = (self.interval(), o.interval());
+        if x.below(&y) {
+            filter::settled(Stage::Double);
             return Ordering::Less;
         }
-        if o.0.interval.below(&self.0.interval) {
+        if y.below(&x) {
+            filter::settled(Stage::Double);
             return Ordering::Greater;
         }
         match (&self.0.form, &o.0.form) {
-            (Form::Rational(a), Form::Rational(b)) => a.cmp(b),
+            (Form::Rational(a), Form::Rational(b)) => {
+                let order = a.cmp(b);
+                let point = order.is_eq() && x.lo == x.hi;
+                if point && x.is_finite() {
+                    filter::settled(Stage::Double);
+                } else {
+                    filter::settled_exactly(order.is_eq(), a.bits().max(b.bits()));
+                }
+                order
+            }
             (Form::Rational(a), _) => o.cmp_rat(a).reverse(),
             (_, Form::Rational(b)) => self.cmp_rat(b),
             _ => self.exact().cmp(o.exact()),

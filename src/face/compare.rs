@@ -1,0 +1,353 @@
+//! Two curves: which is higher at a number or beside it, and where they meet.
+//!
+//! The idea: all of it is one polynomial, h = P₁Q₂ − P₂Q₁, whose sign (with those of the denominators) is
+//! that of the difference of the curves, and whose roots are the crossings. It is known exactly in machine words
+//! where the curves are small, with error bounds in doubles otherwise, and exactly in any case.
+
+use super::approx::{Approx, horner};
+use super::isolate::{Roots, isolate, one_sign};
+use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
+use crate::number::Poly;
+use std::cmp::Ordering;
+
+impl Kernel {
+    /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
+    /// quadratic; else it is P₁Q₂ − P₂Q₁.
+    #[inline]
+    fn proportional(&self, c: CurveId, d: CurveId) -> bool {
+        self.curves[c as usize].den == self.curves[d as usize].den
+    }
+
+    /// h.
+    pub(super) fn diff_poly(&self, c: CurveId, d: CurveId) -> Poly {
+        let ((p, q), (p2, q2)) = (self.polys(c), self.polys(d));
+        if self.proportional(c, d) {
+            let n = q.degree().unwrap_or(0);
+            p.scale(&q2.coeff(n)) - p2.scale(&q.coeff(n))
+        } else {
+            &p * &q2 - &p2 * &q
+        }
+    }
+
+    /// h in machine words, where the curves are small.
+    #[inline]
+    pub(super) fn diff_small(&self, c: CurveId, d: CurveId) -> Option<[i128; 5]> {
+        let (Coeffs::Small(a), Coeffs::Small(b)) = (
+            &self.curves[c as usize].exact,
+            &self.curves[d as usize].exact,
+        ) else {
+            return None;
+        };
+        let times = |x: i64, y: i64| i128::from(x) * i128::from(y);
+        if self.proportional(c, d) {
+            let k = 5 - (3..6).rev().position(|i| a[i] != 0).unwrap_or(0);
+            let h = |i: usize| times(a[i], b[k]) - times(b[i], a[k]);
+            return Some([h(0), h(1), h(2), 0, 0]);
+        }
+        let mut h = [0; 5];
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i + j] += times(a[i], b[j + 3]) - times(b[i], a[j + 3]);
+            }
+        }
+        Some(h)
+    }
+
+    /// The coefficients of h with certified errors.
+    #[inline]
+    fn diff(&self, c: CurveId, d: CurveId) -> [Approx; 5] {
+        if let Some(h) = self.diff_small(c, d) {
+            return h.map(Approx::from_int);
+        }
+        let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
+        let mut h = [Approx::default(); 5];
+        if self.proportional(c, d) {
+            let k = if a.q[2].v != 0.0 {
+                2
+            } else {
+                usize::from(a.q[1].v != 0.0)
+            };
+            for (i, h) in h.iter_mut().enumerate().take(3) {
+                *h = a.p[i] * b.q[k] - b.p[i] * a.q[k];
+            }
+            return h;
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i + j] = h[i + j] + (a.p[i] * b.q[j] - b.p[i] * a.q[j]);
+            }
+        }
+        h
+    }
+
+    /// Exact order of the values of two curves at a number; neither may have a pole there.
+    #[inline]
+    pub(crate) fn cmp_at(&mut self, c: CurveId, d: CurveId, x: NumId) -> Ordering {
+        if c == d {
+            return Ordering::Equal;
+        }
+        let (a, b) = (self.height(c, x), self.height(d, x));
+        let gap = a - b;
+        match gap.sign() {
+            Some(s) if s != 0 => s.cmp(&0),
+            _ => self.cmp_at_near(c, d, x),
+        }
+    }
+
+    #[cold]
+    fn cmp_at_near(&mut self, c: CurveId, d: CurveId, x: NumId) -> Ordering {
+        self.stats.heights_exact += 1;
+        let root = self.find(x);
+        for id in [x, root] {
+            if let Def::Cross(a, b) = self.nums[id as usize].def
+                && ((a, b) == (c, d) || (a, b) == (d, c))
+            {
+                return Ordering::Equal;
+            }
+            if let Some(m) = self.equation(id)
+                && let Some(h) = self.diff_small(c, d)
+                && vanishes(&h, &m) == Some(true)
+            {
+                return Ordering::Equal;
+            }
+        }
+        let h = self.diff_poly(c, d);
+        let s = self.exact(x).sign_of(&h);
+        (s * self.diff_orientation(c, d, x)).cmp(&0)
+    }
+
+    /// The sign that turns h into the difference of the curves.
+    fn diff_orientation(&mut self, c: CurveId, d: CurveId, x: NumId) -> i32 {
+        // The last coefficient of every denominator is positive.
+        let first = self.denominator_sign(c, x);
+        if self.proportional(c, d) {
+            first
+        } else {
+            first * self.denominator_sign(d, x)
+        }
+    }
+
+    /// Exact order just right (or left) of a common point of two curves.
+    pub(crate) fn cmp_beside(&mut self, c: CurveId, d: CurveId, x: NumId, right: bool) -> Ordering {
+        if c == d {
+            return Ordering::Equal;
+        }
+        let (a, b) = (self.slope(c, x), self.slope(d, x));
+        let turn = |o: Ordering| if right { o } else { o.reverse() };
+        if let Some(s) = (a - b).sign()
+            && s != 0
+        {
+            return turn(s.cmp(&0));
+        }
+        self.stats.germs_exact += 1;
+        let orientation = self.diff_orientation(c, d, x);
+        if let Some((s, odd)) = self.germ_sign(c, d, x) {
+            let o = (s * orientation).cmp(&0);
+            return if odd { turn(o) } else { o };
+        }
+        let mut h = self.diff_poly(c, d);
+        let mut odd = false;
+        loop {
+            h = h.derivative();
+            odd = !odd;
+            debug_assert!(!h.is_zero(), "different curves differ beside a point");
+            if h.is_zero() {
+                return Ordering::Equal;
+            }
+            let s = self.exact(x).sign_of(&h) * orientation;
+            if s != 0 {
+                return if odd { turn(s.cmp(&0)) } else { s.cmp(&0) };
+            }
+        }
+    }
+
+    /// The sign of the first derivative of h that does not vanish at its root x, and whether its order is
+    /// odd, by integers and doubles; None where these do not tell.
+    fn germ_sign(&self, c: CurveId, d: CurveId, x: NumId) -> Option<(i32, bool)> {
+        let m = self.equation(x)?;
+        let (mut h, u) = (self.diff_small(c, d)?, self.approx(x));
+        let mut odd = false;
+        loop {
+            for k in 1..5 {
+                h[k - 1] = h[k].checked_mul(k as i128)?;
+            }
+            h[4] = 0;
+            odd = !odd;
+            if h == [0; 5] {
+                return None;
+            }
+            if let Some(s @ (1 | -1)) = horner(&h.map(Approx::from_int), u).sign() {
+                return Some((s, odd));
+            }
+            if vanishes(&h, &m) != Some(true) {
+                return None;
+            }
+        }
+    }
+
+    fn slope(&self, c: CurveId, x: NumId) -> Approx {
+        let (curve, u) = (&self.curves[c as usize], self.approx(x));
+        let (p, q) = (horner(&curve.p, u), horner(&curve.q, u));
+        let (dp, dq) = (derivative(&curve.p, u), derivative(&curve.q, u));
+        (dp * q - p * dq).over(q * q)
+    }
+
+    /// Whether the two surely do not meet over [lo, hi].
+    #[inline]
+    pub(crate) fn miss(&self, c: CurveId, d: CurveId, lo: f64, hi: f64) -> bool {
+        let h = self.diff(c.min(d), c.max(d));
+        let n = (0..5).rev().find(|&k| h[k].sign() != Some(0));
+        match n {
+            None => false,
+            Some(0) => matches!(h[0].sign(), Some(-1 | 1)),
+            Some(n) => one_sign(&h[..=n], lo, hi),
+        }
+    }
+
+    /// Every root of h in [lo, hi] goes to `out`, those equal to a `known` root perhaps not, and perhaps
+    /// roots outside. The known ones must be roots of h.
+    pub(crate) fn crossings(
+        &mut self,
+        c: CurveId,
+        d: CurveId,
+        range: (f64, f64),
+        known: &[NumId],
+        out: &mut Vec<NumId>,
+    ) {
+        self.stats.pairs += 1;
+        let (c, d) = (c.min(d), c.max(d));
+        let h = self.diff(c, d);
+        // Deflation: what remains after dividing by u − e has the other roots.
+        let mut g = h;
+        let mut n = 4;
+        while n > 0 && g[n].sign() == Some(0) {
+            n -= 1;
+        }
+        for &e in known {
+            if n == 0 {
+                break;
+            }
+            let x = self.approx(e);
+            let mut carry = g[n];
+            for k in (0..n).rev() {
+                let below = g[k] + x * carry;
+                g[k] = carry;
+                carry = below;
+            }
+            g[n] = Approx::default();
+            n -= 1;
+        }
+        // A margin, so that a root at an end of the range lies well inside.
+        let (lo, hi) = range;
+        let margin = (hi - lo) * 2f64.powi(-24) + (lo.abs() + hi.abs()) * 2f64.powi(-40);
+        let mut found = Roots {
+            at: [(0.0, 0.0); 4],
+            n: 0,
+        };
+        let settled = isolate(&g[..=n], lo - margin, hi + margin, &mut found);
+        if settled && found.n == 0 {
+            return;
+        }
+        let clear = |k: &Kernel, r: (f64, f64)| {
+            known.iter().all(|&e| {
+                let (a, b) = k.enclosure(e);
+                b < r.0 || r.1 < a
+            })
+        };
+        let from = out.len();
+        if settled
+            && found.at[..found.n].iter().all(|&r| {
+                clear(self, r) && self.intern(c, d, &h, r).map(|id| out.push(id)).is_some()
+            })
+        {
+            return;
+        }
+        out.truncate(from);
+        self.all_crossings(c, d, out);
+    }
+
+    /// The name of the only root of h in an enclosure; None where it may be confused with another.
+    fn intern(&mut self, c: CurveId, d: CurveId, h: &[Approx; 5], r: (f64, f64)) -> Option<NumId> {
+        if let Some(pair) = self.pairs.get(&(c, d)) {
+            for &id in &pair.ids {
+                let n = &self.nums[id as usize];
+                if n.hi < r.0 || r.1 < n.lo {
+                    continue;
+                }
+                let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
+                let steep = [
+                    h[1],
+                    two(h[2]),
+                    h[3] * Approx::exact(3.0),
+                    h[4] * Approx::exact(4.0),
+                ];
+                // Monotone on both: one root.
+                return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+            }
+            if pair.complete {
+                return None;
+            }
+        }
+        let id = self.add(r.0, r.1, Def::Cross(c, d));
+        self.pairs.entry((c, d)).or_default().ids.push(id);
+        Some(id)
+    }
+
+    /// All real roots of h, exactly.
+    #[cold]
+    fn all_crossings(&mut self, c: CurveId, d: CurveId, out: &mut Vec<NumId>) {
+        let pair = self.pairs.entry((c, d)).or_default();
+        if !pair.complete {
+            pair.complete = true;
+            let before = pair.ids.clone();
+            self.stats.pairs_exact += 1;
+            for r in self.diff_poly(c, d).real_roots() {
+                let i = r.interval();
+                let mut same = None;
+                for &id in &before {
+                    let (lo, hi) = self.enclosure(id);
+                    if i.lo <= hi && lo <= i.hi && *self.exact(id) == r {
+                        same = Some(id);
+                    }
+                }
+                if same.is_none() {
+                    let id = self.add(i.lo, i.hi, Def::Cross(c, d));
+                    self.settle_value(id, r);
+                    self.pairs.entry((c, d)).or_default().ids.push(id);
+                }
+            }
+        }
+        out.extend(self.pairs.get(&(c, d)).into_iter().flat_map(|p| &p.ids));
+    }
+}
+
+#[inline]
+fn derivative(f: &[Approx; 3], u: Approx) -> Approx {
+    two(f[2] * u) + f[1]
+}
+
+/// Whether h vanishes at the irrational (or only) roots of m, by pseudo-division; None where it does not
+/// fit, or where the remainder does not tell.
+pub(super) fn vanishes(h: &[i128; 5], m: &[i64; 3]) -> Option<bool> {
+    let top = if m[2] != 0 { 2 } else { 1 };
+    let mut r = *h;
+    let lead = i128::from(m[top]);
+    for k in (top..5).rev() {
+        let c = r[k];
+        if c == 0 {
+            continue;
+        }
+        for x in &mut r[..k] {
+            *x = x.checked_mul(lead)?;
+        }
+        for j in 0..top {
+            let t = c.checked_mul(i128::from(m[j]))?;
+            r[k - top + j] = r[k - top + j].checked_sub(t)?;
+        }
+        r[k] = 0;
+    }
+    if r[..top].iter().all(|&x| x == 0) {
+        return Some(true);
+    }
+    None
+}

@@ -1,0 +1,291 @@
+//! Numbers on the u axis: made, named, compared.
+//!
+//! The idea: a number is an enclosure in doubles and a word on what it is (a root of an end's equation, the
+//! crossing of two curves). Most comparisons end with the enclosures. Those that meet are told apart by an
+//! integer test where one side is a root of a small quadratic, else by algebraic numbers, made once, and by
+//! cells of 2^-FINE. Numbers proven equal are united, so that the second question costs nothing.
+
+use super::approx::Approx;
+use super::compare::vanishes;
+use super::kernel::{Def, Defect, Kernel, Num, NumId};
+use crate::number::{Algebraic, Int, Poly, Rat};
+use std::cmp::Ordering;
+
+/// Bits after the point of the cached cells that tell very near numbers apart.
+const FINE: u32 = 320;
+
+impl Kernel {
+    /// The k-th real root, from below, of m₀ + m₁u + m₂u² (a double root is one root, also by k = 1).
+    pub(crate) fn root(&mut self, m: &[Int; 3], k: u8) -> Result<NumId, Defect> {
+        let key = Poly::new(m.to_vec()).primitive();
+        if matches!(key.degree(), None | Some(0)) {
+            return Err(Defect::NoSuchRoot);
+        }
+        let key: [Int; 3] = std::array::from_fn(|i| key.coeff(i));
+        let small: [Option<i64>; 3] =
+            std::array::from_fn(|i| key[i].to_i64().filter(|c| c.unsigned_abs() < 1 << 53));
+        if let [Some(a), Some(b), Some(c)] = small {
+            return self.small_root([a, b, c], k);
+        }
+        if let Some(&id) = self.big_root_ids.get(&(key.clone(), k)) {
+            return Ok(id);
+        }
+        let roots = Poly::new(key.to_vec()).real_roots();
+        let double = roots.len() == 1 && !key[2].is_zero() && k == 1;
+        let r = roots
+            .get(if double { 0 } else { k as usize })
+            .ok_or(Defect::NoSuchRoot)?;
+        let id = self.known(r.clone());
+        self.big_root_ids.insert((key, k), id);
+        Ok(id)
+    }
+
+    fn small_root(&mut self, m: [i64; 3], mut k: u8) -> Result<NumId, Defect> {
+        let x = m.map(|c| Approx::exact(c as f64));
+        let root = if m[2] == 0 {
+            if k > 0 {
+                return Err(Defect::NoSuchRoot);
+            }
+            (-x[0]).over(x[1])
+        } else {
+            let d = i128::from(m[1]) * i128::from(m[1]) - 4 * i128::from(m[0]) * i128::from(m[2]);
+            if d < 0 || k > 1 {
+                return Err(Defect::NoSuchRoot);
+            }
+            if d == 0 {
+                k = 0;
+                (-x[1]).over(x[2] + x[2])
+            } else {
+                let v = d as f64;
+                let s = Approx {
+                    v,
+                    e: v * f64::EPSILON,
+                }
+                .sqrt();
+                // Written so that nothing cancels; s grows the side that x₁ already has.
+                let low_first = m[1] >= 0;
+                let q = if low_first {
+                    -(x[1] + s).half()
+                } else {
+                    (s - x[1]).half()
+                };
+                if (k == 0) == low_first {
+                    q.over(x[2])
+                } else {
+                    x[0].over(q)
+                }
+            }
+        };
+        if let Some(&id) = self.root_ids.get(&(m, k)) {
+            return Ok(id);
+        }
+        let def = Def::Root(self.roots.len() as u32);
+        self.roots.push((m, k));
+        let id = self.add(root.lo(), root.hi(), def);
+        if !(root.lo().is_finite() && root.hi().is_finite()) {
+            let i = self.exact(id).interval();
+            (self.nums[id as usize].lo, self.nums[id as usize].hi) = (i.lo, i.hi);
+        }
+        self.root_ids.insert((m, k), id);
+        Ok(id)
+    }
+
+    /// A rational number.
+    pub(crate) fn rational(&mut self, r: &Rat) -> NumId {
+        let m = [-r.numer(), r.denom().clone(), Int::zero()];
+        self.root(&m, 0).expect("a linear equation has a root")
+    }
+
+    /// A real algebraic number under a name of its own.
+    pub(crate) fn known(&mut self, a: Algebraic) -> NumId {
+        let i = a.interval();
+        let id = self.add(i.lo, i.hi, Def::Known);
+        self.exact.insert(id, a);
+        id
+    }
+
+    pub(super) fn add(&mut self, lo: f64, hi: f64, def: Def) -> NumId {
+        let id = self.nums.len() as NumId;
+        self.nums.push(Num {
+            lo,
+            hi,
+            parent: id,
+            def,
+        });
+        id
+    }
+
+    /// An enclosure.
+    #[inline]
+    pub(crate) fn enclosure(&self, x: NumId) -> (f64, f64) {
+        let n = &self.nums[x as usize];
+        (n.lo, n.hi)
+    }
+    #[inline]
+    pub(super) fn approx(&self, x: NumId) -> Approx {
+        let n = &self.nums[x as usize];
+        Approx::between(n.lo, n.hi)
+    }
+
+    /// The name that all numbers proven equal share.
+    pub(crate) fn find(&mut self, mut x: NumId) -> NumId {
+        while self.nums[x as usize].parent != x {
+            let up = self.nums[x as usize].parent;
+            let above = self.nums[up as usize].parent;
+            self.nums[x as usize].parent = above;
+            x = above;
+        }
+        x
+    }
+
+    /// Exact order of two numbers.
+    #[inline]
+    pub(crate) fn cmp(&mut self, x: NumId, y: NumId) -> Ordering {
+        let (a, b) = (&self.nums[x as usize], &self.nums[y as usize]);
+        if a.hi < b.lo {
+            return Ordering::Less;
+        }
+        if b.hi < a.lo {
+            return Ordering::Greater;
+        }
+        self.cmp_near(x, y)
+    }
+
+    #[cold]
+    fn cmp_near(&mut self, x: NumId, y: NumId) -> Ordering {
+        let (x, y) = (self.find(x), self.find(y));
+        if x == y {
+            return Ordering::Equal;
+        }
+        self.stats.numbers_exact += 1;
+        if let (Some(a), Some(b)) = (self.fine.get(&x), self.fine.get(&y))
+            && a != b
+        {
+            return a.cmp(b);
+        }
+        if self.same_root(x, y) || self.same_root(y, x) {
+            self.unite(x, y);
+            return Ordering::Equal;
+        }
+        let (a, b) = (self.exact(x).clone(), self.exact(y).clone());
+        if a == b {
+            self.unite(x, y);
+            return Ordering::Equal;
+        }
+        let order = self.fine(x).clone().cmp(self.fine(y));
+        if order.is_eq() { a.cmp(&b) } else { order }
+    }
+
+    /// The equation of low degree that a number is known to satisfy, in machine words.
+    pub(super) fn equation(&self, x: NumId) -> Option<[i64; 3]> {
+        match self.nums[x as usize].def {
+            Def::Root(i) => Some(self.roots[i as usize].0),
+            _ => self.low.get(&x).copied(),
+        }
+    }
+
+    /// Whether y, a crossing, is x, by an integer test; false where that does not tell.
+    fn same_root(&self, x: NumId, y: NumId) -> bool {
+        let Def::Cross(c, d) = self.nums[y as usize].def else {
+            return false;
+        };
+        let (a, b) = (self.enclosure(x), self.enclosure(y));
+        // x is a root of h in the enclosure that holds only one.
+        a.0 >= b.0
+            && a.1 <= b.1
+            && self.equation(x).is_some_and(|m| {
+                self.diff_small(c, d)
+                    .is_some_and(|h| vanishes(&h, &m) == Some(true))
+            })
+    }
+
+    fn unite(&mut self, x: NumId, y: NumId) {
+        let (lo, hi) = {
+            let (a, b) = (&self.nums[x as usize], &self.nums[y as usize]);
+            (a.lo.max(b.lo), a.hi.min(b.hi))
+        };
+        for id in [x, y] {
+            let n = &mut self.nums[id as usize];
+            // A crossing is the one root in its own enclosure; a smaller one holds the same number.
+            (n.lo, n.hi) = (lo, hi);
+        }
+        self.nums[y as usize].parent = x;
+    }
+
+    /// floor(x·2^FINE), made once.
+    fn fine(&mut self, x: NumId) -> &Int {
+        if !self.fine.contains_key(&x) {
+            let (lo, _) = self.exact(x).enclosure(FINE + 1);
+            let cell = (lo.numer().shl(u64::from(FINE)))
+                .div_rem_floor(lo.denom())
+                .0;
+            self.fine.insert(x, cell);
+        }
+        &self.fine[&x]
+    }
+
+    /// Exact order of a number and a double.
+    #[inline]
+    pub(crate) fn cmp_double(&mut self, x: NumId, p: f64) -> Ordering {
+        let n = &self.nums[x as usize];
+        if n.hi < p {
+            Ordering::Less
+        } else if n.lo > p {
+            Ordering::Greater
+        } else if p.is_finite() {
+            self.exact(x).cmp_rat(&Rat::from_f64(p))
+        } else if p > 0.0 {
+            Ordering::Less
+        } else {
+            Ordering::Greater
+        }
+    }
+
+    /// The number itself, made once.
+    pub(crate) fn exact(&mut self, x: NumId) -> &Algebraic {
+        if !self.exact.contains_key(&x) {
+            let n = &self.nums[x as usize];
+            let (lo, hi) = (n.lo, n.hi);
+            let a = match n.def {
+                Def::Root(i) => {
+                    let (m, k) = self.roots[i as usize];
+                    let roots = Poly::from_i64(&m).real_roots();
+                    roots[(k as usize).min(roots.len() - 1)].clone()
+                }
+                Def::Cross(c, d) => {
+                    let mut roots = self.diff_poly(c, d).real_roots();
+                    roots.retain(|r| {
+                        let i = r.interval();
+                        i.lo <= hi && lo <= i.hi
+                    });
+                    if roots.len() > 1 {
+                        let (lo, hi) = (Rat::from_f64(lo), Rat::from_f64(hi));
+                        roots.retain(|r| r.cmp_rat(&lo).is_ge() && r.cmp_rat(&hi).is_le());
+                    }
+                    roots.pop().expect("a crossing's enclosure holds a root")
+                }
+                Def::Known => unreachable!("known numbers carry their value"),
+            };
+            self.settle_value(x, a);
+        }
+        &self.exact[&x]
+    }
+
+    /// Keeps the value of a number, and its equation where that is of low degree.
+    pub(super) fn settle_value(&mut self, x: NumId, a: Algebraic) {
+        let i = a.interval();
+        let n = &mut self.nums[x as usize];
+        (n.lo, n.hi) = (n.lo.max(i.lo), n.hi.min(i.hi));
+        if matches!(n.def, Def::Cross(..)) {
+            let m = a.known_rat().map_or_else(
+                || a.defining_polynomial(),
+                |r| Poly::new(vec![-r.numer(), r.denom().clone()]),
+            );
+            let m = [0, 1, 2, 3].map(|i| m.coeff(i).to_i64());
+            if let [Some(a), Some(b), Some(c), Some(0)] = m {
+                self.low.insert(x, [a, b, c]);
+            }
+        }
+        self.exact.insert(x, a);
+    }
+}

@@ -1,0 +1,40 @@
+//! PuzzleFlex: how far loosely joined rigid bodies flex, exactly (Lensgraf et al. 2019, cited as
+//! PF).
+//!
+//! ```text
+//! structure file ─ read ─▶ Structure ─ shape, pairs ─▶ constraints ─ model ─▶ linear program
+//!   ─ lp ─▶ direction ─ step ─▶ next configuration …  ─ report, picture ─▶ JSON, SVG
+//! ```
+//!
+//! | file | question |
+//! | --- | --- |
+//! | `types`, `read`, `schema` | what is a structure, and what is none? |
+//! | `shape` | where does a body stand, in integers? |
+//! | `pairs` | which point is to stay on its side of which line? |
+//! | `model` | what are the distances, gradients and objective there? |
+//! | `step` | how far may a step go, and where does it end? |
+//! | `generate` | the paper's families of structures |
+//!
+//! Configurations are rational throughout. What doubles do is to propose: a direction, a length.
+//! Whether a configuration respects its constraints is decided by exact integers.
+
+mod branch;
+pub mod generate;
+mod model;
+mod pairs;
+mod random;
+mod read;
+pub mod report;
+mod schema;
+mod shape;
+mod step;
+mod types;
+mod write;
+
+pub use pairs::{Facing, Pair, Plane, Point};
+pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
+pub use schema::structure_schema;
+pub use shape::Pose;
+pub use step::{Corners, Ending, FlexOptions, FlexProgress, Flexed, Step, Violation, flex};
+pub use types::*;
+pub use write::structure_to_toml;

@@ -1,0 +1,533 @@
+//! From a configuration to a linear program: signed distances, their gradients, the objective.
+//!
+//! A constraint (PF eq. 12) says that a point p of body 2 stays on the positive side of a line of
+//! body 1, normal n outward, through o: d(q₁, q₂) = n(q₁)·(p(q₂) − o(q₁)) ≥ 0. With r₂ = p − x₂
+//! and Δ = x₂ − x₁ that is n·Δ + n·r₂ − n·(o − x₁), whose last term no motion changes. Hence
+//!
+//! ∂x₁ = −n, ∂x₂ = n, ∂θ₁ = n × (p − x₁), ∂θ₂ = r₂ × n
+//!
+//! which is PF eq. 16 with its sign put right and its lost line for θ₂. Normals keep whatever
+//! length makes everything rational, and each row is multiplied by a positive number that makes
+//! it integral; neither changes the half-space. A program maximises c·q̇ under J q̇ + d₀ ≥ 0
+//! (PF eq. 11), with three columns for a free body and one for a pinned one.
+
+use super::pairs::{Facing, Pair, Plane, Point, averaged};
+use super::shape::{IntVec, Placed, Pose, Shape, cross, dot, double, integral, primitive};
+use super::types::{Hold, Joint, Structure, Term, View};
+use crate::geometry::Vec2;
+use crate::lp::{Model, Range};
+use crate::number::{Int, Rat};
+
+/// The freedoms of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// x, y and θ.
+    Free,
+    /// θ alone.
+    Pinned,
+    /// None.
+    Fixed,
+}
+
+/// A line in its body's frame: a normal of any length, and a point over `h`.
+#[derive(Clone, Debug)]
+pub(crate) struct Line {
+    normal: IntVec,
+    base: IntVec,
+    h: Int,
+    /// The normal of length one and the point, as doubles.
+    unit: [f64; 2],
+    near: [f64; 2],
+}
+
+/// The lines and the marker of a view, in their frames.
+#[derive(Clone, Debug)]
+pub(crate) struct Sight {
+    pub(crate) body: usize,
+    pub(crate) of: usize,
+    left: Line,
+    right: Line,
+    pub(crate) range: Option<Line>,
+    marker: IntVec,
+    h: Int,
+    near: [f64; 2],
+}
+
+/// All of a structure that does not change as it moves.
+#[derive(Clone, Debug)]
+pub(crate) struct Scaffold {
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) forms: Vec<Form>,
+    pub(crate) epsilon: Rat,
+    pub(crate) joints: Option<Vec<Joint>>,
+    pub(crate) nearest: Option<usize>,
+    pub(crate) views: Vec<Sight>,
+    /// Pairs of bodies that are looked at beside the joints.
+    pub(crate) extra: Vec<(usize, usize)>,
+    /// Weights of the objective.
+    terms: Vec<Weighted>,
+    /// First column of each body.
+    columns: Vec<usize>,
+    pub(crate) column_count: usize,
+    /// Where every body stands at the start.
+    pub(crate) start: Vec<Pose>,
+    rotation_limit: Option<Rat>,
+}
+
+/// A term of the objective with its point, relative to the reference point, in the frame.
+#[derive(Clone, Debug)]
+struct Weighted {
+    body: usize,
+    point: Vec2,
+    dx: Rat,
+    dy: Rat,
+    dtheta: Rat,
+}
+
+/// A constraint at a configuration, in integers: J q̇ + d₀ ≥ 0 times a positive number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Row {
+    pub(crate) pair: Pair,
+    /// Coefficients of x₂ and y₂; those of x₁ and y₁ are the opposite.
+    pub(crate) normal: IntVec,
+    pub(crate) theta1: Int,
+    pub(crate) theta2: Int,
+    pub(crate) d0: Int,
+}
+
+fn line(normal: IntVec, base: IntVec, h: Int) -> Line {
+    let (x, y) = super::pairs::unit(&normal);
+    let part = |k: usize| double(&Rat::new(base[k].clone(), h.clone()));
+    Line {
+        unit: [x, y],
+        near: [part(0), part(1)],
+        normal: primitive(normal),
+        base,
+        h,
+    }
+}
+
+fn sight(structure: &Structure, view: &View) -> Sight {
+    let relative = |body: usize, p: &Vec2| p - &super::shape::reference(&structure.bodies[body]);
+    let camera = relative(view.body, &view.camera);
+    let marker = relative(view.of, &view.marker);
+    let through = |normal: Vec2, point: &Vec2| {
+        let (mut n, _) = integral(std::iter::once(&normal));
+        let (mut b, h) = integral(std::iter::once(point));
+        line(n.swap_remove(0), b.swap_remove(0), h)
+    };
+    let (mut m, h) = integral(std::iter::once(&marker));
+    Sight {
+        body: view.body,
+        of: view.of,
+        // To the right of the left ray, to the left of the right one.
+        left: through(view.left.right_normal(), &camera),
+        right: through(-&view.right.right_normal(), &camera),
+        range: view.far.as_ref().map(|far| {
+            let back = &view.camera - far;
+            through(back, &relative(view.body, far))
+        }),
+        near: super::shape::doubles(&marker),
+        marker: m.swap_remove(0),
+        h,
+    }
+}
+
+impl Scaffold {
+    pub(crate) fn new(structure: &Structure) -> Scaffold {
+        let forms: Vec<Form> = structure
+            .bodies
+            .iter()
+            .map(|b| match b.hold {
+                Hold::Free => Form::Free,
+                Hold::Pin(_) => Form::Pinned,
+                Hold::Fixed => Form::Fixed,
+            })
+            .collect();
+        let mut columns = Vec::with_capacity(forms.len());
+        let mut column_count = 0;
+        for form in &forms {
+            columns.push(column_count);
+            column_count += match form {
+                Form::Free => 3,
+                Form::Pinned => 1,
+                Form::Fixed => 0,
+            };
+        }
+        let mut scaffold = Scaffold {
+            shapes: structure.bodies.iter().map(Shape::of).collect(),
+            forms,
+            epsilon: structure.epsilon.clone(),
+            joints: structure.joints.clone(),
+            nearest: structure.nearest,
+            views: structure
+                .views
+                .iter()
+                .map(|v| sight(structure, v))
+                .collect(),
+            extra: Vec::new(),
+            terms: Vec::new(),
+            columns,
+            column_count,
+            start: structure.bodies.iter().map(Pose::of).collect(),
+            rotation_limit: structure.step.rotation_limit.clone(),
+        };
+        scaffold.terms = weights(structure, &scaffold);
+        scaffold
+    }
+
+    /// The bodies at given poses.
+    pub(crate) fn place(&self, poses: &[Pose]) -> Vec<Placed> {
+        let each = self.shapes.iter().zip(poses);
+        each.map(|(s, p)| Placed::new(s, p)).collect()
+    }
+
+    /// The line of a pair in its body's frame.
+    fn line(&self, body: usize, plane: Plane) -> Line {
+        let shape = &self.shapes[body];
+        match plane {
+            Plane::Edge(k) => {
+                let k = k as usize;
+                let (x, y) = super::pairs::unit(&shape.normals[k]);
+                Line {
+                    normal: shape.normals[k].clone(),
+                    base: shape.vertices[k].clone(),
+                    h: shape.h.clone(),
+                    unit: [x, y],
+                    near: shape.local[k],
+                }
+            }
+            Plane::Corner(k) => {
+                let (before, after) = shape.edges_at(k as usize);
+                let normal = averaged(&shape.normals[before], &shape.normals[after]);
+                line(normal, shape.vertices[k as usize].clone(), shape.h.clone())
+            }
+            Plane::ConeLeft(v) => self.views[v as usize].left.clone(),
+            Plane::ConeRight(v) => self.views[v as usize].right.clone(),
+            Plane::Range(v) => {
+                let sight = &self.views[v as usize];
+                sight.range.clone().unwrap_or_else(|| sight.left.clone())
+            }
+        }
+    }
+
+    /// The row of a pair.
+    pub(crate) fn row(&self, pair: &Pair, placed: &[Placed]) -> Row {
+        let (one, two) = (pair.line_body as usize, pair.point_body as usize);
+        let line = self.line(one, pair.plane);
+        let (p1, p2) = (&placed[one], &placed[two]);
+        let marker;
+        let (offset, den2) = match pair.point {
+            Point::Vertex(v) => (&p2.offsets[v as usize], p2.den.clone()),
+            Point::Marker(v) => {
+                let sight = &self.views[v as usize];
+                marker = p2.turn.apply(&sight.marker);
+                (&marker, &p2.turn.d * &sight.h)
+            }
+        };
+        // n = N / D₁; Δ over q; r₂ over den₂.
+        let n = p1.turn.apply(&line.normal);
+        let (delta, q) = difference(p1, p2);
+        let constant = dot(&line.normal, &line.base);
+        // Everything times D₁·den₂·q, and times h where the last term needs it.
+        let scale = &den2 * &q;
+        let mut normal = [&n[0] * &scale, &n[1] * &scale];
+        let mut theta1 = &cross(&n, &delta) * &den2 + &cross(&n, offset) * &q;
+        let mut theta2 = &cross(offset, &n) * &q;
+        let mut d0 = &dot(&n, &delta) * &den2 + &dot(&n, offset) * &q;
+        let last = &(&constant * &p1.turn.d) * &scale;
+        let (whole, rest) = last.div_rem_floor(&line.h);
+        if rest.is_zero() {
+            d0 -= &whole;
+        } else {
+            let h = &line.h;
+            normal = [&normal[0] * h, &normal[1] * h];
+            theta1 = &theta1 * h;
+            theta2 = &theta2 * h;
+            d0 = &d0 * h - &last;
+        }
+        Row {
+            pair: *pair,
+            normal,
+            theta1,
+            theta2,
+            d0,
+        }
+    }
+
+    /// The signed distance of a pair in doubles, and a bound of its error.
+    pub(crate) fn near(&self, pair: &Pair, placed: &[Placed]) -> (f64, f64) {
+        let (one, two) = (pair.line_body as usize, pair.point_body as usize);
+        let (p1, p2) = (&placed[one], &placed[two]);
+        let stored;
+        let (unit, from) = match pair.plane {
+            Plane::Edge(k) => (self.shapes[one].units[k as usize], p1.near[k as usize]),
+            plane => {
+                stored = self.line(one, plane);
+                let (a, b) = (stored.near[0], stored.near[1]);
+                let [x, y] = p1.centre;
+                let at = [x + (p1.cos * a - p1.sin * b), y + (p1.sin * a + p1.cos * b)];
+                (stored.unit, at)
+            }
+        };
+        let n = [
+            p1.cos * unit[0] - p1.sin * unit[1],
+            p1.sin * unit[0] + p1.cos * unit[1],
+        ];
+        let to = match pair.point {
+            Point::Vertex(v) => p2.near[v as usize],
+            Point::Marker(v) => {
+                let [a, b] = self.views[v as usize].near;
+                let [x, y] = p2.centre;
+                [x + (p2.cos * a - p2.sin * b), y + (p2.sin * a + p2.cos * b)]
+            }
+        };
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let far = dx.abs() + dy.abs();
+        // A marker or a camera may lie outside its body: its own distance counts as well.
+        let outlying = from[0].abs() + from[1].abs() + to[0].abs() + to[1].abs();
+        let error = 4.0 * (p1.blur + p2.blur) + (far + outlying) * 2f64.powi(-46);
+        (n[0] * dx + n[1] * dy, error)
+    }
+
+    /// The weighted sum of displacements since the start, exactly. An angle counts as twice the
+    /// tangent of half its change, which is the angle up to its third power.
+    pub(crate) fn displacement(&self, poses: &[Pose]) -> Rat {
+        let mut sum = Rat::zero();
+        for t in &self.terms {
+            let (from, to) = (&self.start[t.body], &poses[t.body]);
+            if from == to {
+                continue;
+            }
+            let mut moved = &to.place - &from.place;
+            if !t.point.is_zero() {
+                let turned = &t.point.rotate_tan_half(&to.tan_half)
+                    - &t.point.rotate_tan_half(&from.tan_half);
+                moved = &moved + &turned;
+            }
+            sum = sum + &t.dx * &moved.x + &t.dy * &moved.y;
+            if !t.dtheta.is_zero() {
+                sum = sum + &t.dtheta * &(turned_by(from, to) * Rat::from(2));
+            }
+        }
+        sum
+    }
+
+    /// The objective's coefficients (x, y, θ) of every body at a configuration.
+    pub(crate) fn costs(&self, poses: &[Pose]) -> Vec<[Rat; 3]> {
+        let mut costs = vec![[Rat::zero(), Rat::zero(), Rat::zero()]; self.forms.len()];
+        for t in &self.terms {
+            let slot = &mut costs[t.body];
+            slot[0] = &slot[0] + &t.dx;
+            slot[1] = &slot[1] + &t.dy;
+            let mut theta = t.dtheta.clone();
+            if !t.point.is_zero() {
+                let r = t.point.rotate_tan_half(&poses[t.body].tan_half);
+                theta = theta + &t.dy * &r.x - &t.dx * &r.y;
+            }
+            slot[2] = &slot[2] + &theta;
+        }
+        costs
+    }
+
+    /// Whether anything is asked.
+    pub(crate) fn has_objective(&self) -> bool {
+        !self.terms.is_empty()
+    }
+
+    /// The columns x, y, θ of a body, as far as it has them.
+    pub(crate) fn column(&self, body: usize) -> [Option<usize>; 3] {
+        let c = self.columns[body];
+        match self.forms[body] {
+            Form::Free => [Some(c), Some(c + 1), Some(c + 2)],
+            Form::Pinned => [None, None, Some(c)],
+            Form::Fixed => [None; 3],
+        }
+    }
+
+    /// The entries of a row by column.
+    pub(crate) fn entries<'a>(&self, row: &'a Row) -> Vec<(usize, Int)> {
+        let one = self.column(row.pair.line_body as usize);
+        let two = self.column(row.pair.point_body as usize);
+        let mut out = Vec::with_capacity(6);
+        let mut put = |column: Option<usize>, value: Int| {
+            if let Some(c) = column
+                && !value.is_zero()
+            {
+                out.push((c, value));
+            }
+        };
+        put(one[0], -&row.normal[0]);
+        put(one[1], -&row.normal[1]);
+        put(one[2], row.theta1.clone());
+        put(two[0], row.normal[0].clone());
+        put(two[1], row.normal[1].clone());
+        put(two[2], row.theta2.clone());
+        out
+    }
+
+    /// The linear program of a configuration: rows r0, r1, …, columns x, y, t with the body's
+    /// index.
+    pub(crate) fn program(&self, rows: &[Row], poses: &[Pose]) -> Model {
+        let mut model = Model::new("flex");
+        model.maximise = true;
+        let costs = self.costs(poses);
+        for (body, cost) in costs.into_iter().enumerate() {
+            let names = ["x", "y", "t"];
+            for (k, (column, cost)) in self.column(body).iter().zip(cost).enumerate() {
+                if column.is_some() {
+                    let range = match (&self.rotation_limit, k) {
+                        (Some(limit), 2) => Range {
+                            lower: Some(-limit),
+                            upper: Some(limit.clone()),
+                        },
+                        _ => Range::free(),
+                    };
+                    model.add_column(&format!("{}{body}", names[k]), cost, range);
+                }
+            }
+        }
+        for (k, row) in rows.iter().enumerate() {
+            let at_least = Range::at_least(Rat::from(-&row.d0));
+            let r = model.add_row(&format!("r{k}"), at_least);
+            for (c, v) in self.entries(row) {
+                model.set(r, c, Rat::from(v));
+            }
+        }
+        model
+    }
+
+    /// The averaged rows that stand for facing corners.
+    pub(crate) fn averaged(&self, facing: &[Facing]) -> Vec<Pair> {
+        facing
+            .iter()
+            .map(|f| Pair {
+                line_body: f.first.0,
+                plane: Plane::Corner(f.first.1),
+                point_body: f.second.0,
+                point: Point::Vertex(f.second.1),
+            })
+            .collect()
+    }
+
+    /// The four edges of which one must keep facing corners apart.
+    pub(crate) fn choices(&self, f: &Facing) -> [Pair; 4] {
+        let of = |(line, corner): (u32, u32), (point, vertex): (u32, u32)| {
+            let (before, after) = self.shapes[line as usize].edges_at(corner as usize);
+            [before, after].map(|k| Pair {
+                line_body: line,
+                plane: Plane::Edge(k as u32),
+                point_body: point,
+                point: Point::Vertex(vertex),
+            })
+        };
+        let [a, b] = of(f.first, f.second);
+        let [c, d] = of(f.second, f.first);
+        [a, b, c, d]
+    }
+}
+
+/// tan(Δθ/2) of the rotation from one pose to another.
+pub(crate) fn turned_by(from: &Pose, to: &Pose) -> Rat {
+    let (u, v) = (&from.tan_half, &to.tan_half);
+    let bottom = Rat::one() + u * v;
+    if bottom.is_zero() {
+        // A half turn within one run: no step is that long; count it as a large one.
+        return Rat::from(1 << 20);
+    }
+    (v - u) / bottom
+}
+
+/// x₂ − x₁ over a common denominator.
+fn difference(p1: &Placed, p2: &Placed) -> (IntVec, Int) {
+    if p1.q == p2.q {
+        let part = |k: usize| &p2.place[k] - &p1.place[k];
+        return ([part(0), part(1)], p1.q.clone());
+    }
+    let g = p1.q.gcd(&p2.q);
+    let (f1, f2) = (p2.q.div_exact(&g), p1.q.div_exact(&g));
+    let part = |k: usize| &p2.place[k] * &f2 - &p1.place[k] * &f1;
+    ([part(0), part(1)], &p1.q * &f1)
+}
+
+/// Bits that a radial direction is rounded to: each part is off by at most 2⁻³⁰.
+const DIRECTION_BITS: u64 = 30;
+
+/// v/|v| with each part within 2⁻³⁰; exact where |v| is rational and short. Zero for zero.
+pub(crate) fn direction(v: &Vec2) -> Vec2 {
+    let (mut whole, _) = integral(std::iter::once(v));
+    let v = primitive(whole.swap_remove(0));
+    let square = dot(&v, &v);
+    if square.is_zero() {
+        return Vec2::default();
+    }
+    if let Some(length) = square.sqrt_exact()
+        && length.bits() <= DIRECTION_BITS
+    {
+        let part = |k: usize| Rat::new(v[k].clone(), length.clone());
+        return Vec2::new(part(0), part(1));
+    }
+    let part = |k: usize| {
+        let top = (&v[k] * &v[k]).shl(2 * DIRECTION_BITS);
+        let root = top
+            .div_rem_floor(&square)
+            .0
+            .sqrt()
+            .unwrap_or_else(Int::zero);
+        let root = if v[k].sign() < 0 { -root } else { root };
+        Rat::new(root, Int::one().shl(DIRECTION_BITS))
+    };
+    Vec2::new(part(0), part(1))
+}
+
+/// The terms of the objective with their points.
+fn weights(structure: &Structure, scaffold: &Scaffold) -> Vec<Weighted> {
+    let mut out = Vec::new();
+    let body_point =
+        |body: usize, at: &Vec2| at - &super::shape::reference(&structure.bodies[body]);
+    for term in &structure.objective {
+        match term {
+            Term::Body {
+                body,
+                dx,
+                dy,
+                dtheta,
+            } => out.push(Weighted {
+                body: *body,
+                point: body_point(*body, &Vec2::default()),
+                dx: dx.clone(),
+                dy: dy.clone(),
+                dtheta: dtheta.clone(),
+            }),
+            Term::Vertex {
+                body,
+                vertex,
+                dx,
+                dy,
+            } => out.push(Weighted {
+                body: *body,
+                point: body_point(*body, &structure.bodies[*body].vertices[*vertex]),
+                dx: dx.clone(),
+                dy: dy.clone(),
+                dtheta: Rat::zero(),
+            }),
+            Term::Radial { body, from } => {
+                let all = 0..structure.bodies.len();
+                for k in all.filter(|k| body.is_none_or(|b| b == *k)) {
+                    if scaffold.forms[k] == Form::Fixed {
+                        continue;
+                    }
+                    let away = direction(&(&structure.bodies[k].position - from));
+                    out.push(Weighted {
+                        body: k,
+                        point: body_point(k, &Vec2::default()),
+                        dx: away.x,
+                        dy: away.y,
+                        dtheta: Rat::zero(),
+                    });
+                }
+            }
+        }
+    }
+    out
+}

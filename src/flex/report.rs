@@ -1,0 +1,245 @@
+//! Results as JSON, in the words of the contract.
+
+use super::step::{Ending, Flexed};
+use super::types::Structure;
+use crate::report::Num;
+use serde::Serialize;
+use serde_json::Value;
+
+/// The result of `snapfit flex`.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlexDocument {
+    /// Which format this is.
+    pub schema: &'static str,
+    /// Name of the structure.
+    pub structure: String,
+    /// Bodies, fixed ones included.
+    pub bodies: usize,
+    /// Rows of the first program.
+    pub rows: usize,
+    /// Columns of the programs.
+    pub columns: usize,
+    /// Programs solved in sequence, one a step.
+    pub iterations: usize,
+    /// How stepping ended.
+    pub outcome: &'static str,
+    /// The weighted displacement reached, exact.
+    pub displacement: Num,
+    /// The largest violation at the end.
+    pub violation: Num,
+    /// The steps.
+    pub steps: Vec<StepDocument>,
+    /// `fast` or `safe`.
+    pub path: &'static str,
+    /// `exact`, `bounds` or `float`.
+    pub accuracy: &'static str,
+    /// Where the bodies stand at the end.
+    pub poses: Vec<PoseDocument>,
+    /// Bits of the longest number of any pose, after each step.
+    pub bits: Vec<u64>,
+    /// What proves the steps' optima.
+    pub certificate: Value,
+}
+
+/// One step.
+#[derive(Clone, Debug, Serialize)]
+pub struct StepDocument {
+    /// Optimum of the step's program.
+    pub objective: Num,
+    /// The scale at which its direction was applied.
+    pub step: Num,
+    /// What the displacement gained.
+    pub gain: Num,
+    /// Rows of the program.
+    pub rows: usize,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Of these, for pairs and rows.
+    pub model_seconds: f64,
+    /// Programs that the step took; more than one where corners are branched on.
+    pub programs: usize,
+    /// Convex corners that face each other.
+    pub facing: usize,
+    /// Pivots of the exact simplex method.
+    pub exact_pivots: u64,
+}
+
+/// A body's place.
+#[derive(Clone, Debug, Serialize)]
+pub struct PoseDocument {
+    /// Its name.
+    pub body: String,
+    /// Abscissa of its frame's origin, exact.
+    pub x: String,
+    /// Ordinate.
+    pub y: String,
+    /// tan(θ/2), exact.
+    pub tan_half: String,
+}
+
+impl FlexDocument {
+    /// The document of a run.
+    pub fn new(structure: &Structure, flexed: &Flexed, accuracy: &'static str) -> FlexDocument {
+        let last = flexed.configurations.last();
+        let poses = structure
+            .bodies
+            .iter()
+            .zip(last.into_iter().flatten())
+            .map(|(body, pose)| {
+                let at = pose.position(body);
+                PoseDocument {
+                    body: body.name.clone(),
+                    x: at.x.to_string(),
+                    y: at.y.to_string(),
+                    tan_half: pose.tan_half.to_string(),
+                }
+            })
+            .collect();
+        let proofs: Vec<Value> = flexed
+            .steps
+            .iter()
+            .map(|s| {
+                let end = |v: &Option<crate::number::Rat>| v.as_ref().map(ToString::to_string);
+                serde_json::json!({
+                    "lower": end(&s.enclosure.0),
+                    "upper": end(&s.enclosure.1),
+                    "verified": s.verified,
+                    "lp": s.certificate,
+                })
+            })
+            .collect();
+        let all = flexed.steps.iter().all(|s| s.verified == Some(true));
+        FlexDocument {
+            schema: "snapfit.flex/1",
+            structure: structure.name.clone(),
+            bodies: structure.bodies.len(),
+            rows: flexed.steps.first().map_or(0, |s| s.rows),
+            columns: flexed.columns,
+            iterations: flexed.steps.len(),
+            outcome: flexed.ending.word(),
+            displacement: Num::of_rat(&flexed.displacement),
+            violation: Num::of(&flexed.violation.value()),
+            steps: flexed
+                .steps
+                .iter()
+                .map(|s| StepDocument {
+                    objective: Num::of_rat(&s.objective),
+                    step: Num::of_rat(&s.scale),
+                    gain: Num::of_rat(&s.gain),
+                    rows: s.rows,
+                    seconds: s.seconds,
+                    model_seconds: s.model_seconds,
+                    programs: s.programs,
+                    facing: s.facing,
+                    exact_pivots: s.exact_pivots,
+                })
+                .collect(),
+            path: structure.step.path.word(),
+            accuracy,
+            poses,
+            bits: flexed.steps.iter().map(|s| s.bits).collect(),
+            certificate: serde_json::json!({
+                "kind": "lp-steps",
+                "verified": all,
+                "steps": proofs,
+            }),
+        }
+    }
+
+    /// Whether the question was decided.
+    pub fn decided(ending: Ending) -> bool {
+        ending != Ending::Undecided
+    }
+}
+
+/// What `check` says of a structure.
+#[derive(Clone, Debug, Serialize)]
+pub struct StructureCheck {
+    /// Which format this is.
+    pub schema: &'static str,
+    /// Name of the structure.
+    pub structure: String,
+    /// Bodies.
+    pub bodies: usize,
+    /// Of these, fixed.
+    pub fixed: usize,
+    /// Of these, pinned.
+    pub pinned: usize,
+    /// Vertices of all bodies.
+    pub vertices: usize,
+    /// Columns of the first program.
+    pub columns: usize,
+    /// Rows of the first program.
+    pub rows: usize,
+    /// Convex corners that face each other at the start.
+    pub facing: usize,
+    /// Views.
+    pub views: usize,
+    /// Where constraints come from.
+    pub joints: String,
+    /// Whether an objective is given.
+    pub objective: bool,
+    /// Warnings, one a line.
+    pub warnings: Vec<String>,
+}
+
+impl StructureCheck {
+    /// Looks at a structure; costs one model.
+    pub fn of(structure: &Structure, warnings: Vec<String>) -> StructureCheck {
+        use super::types::Hold;
+        let options = super::step::FlexOptions::default();
+        let run = super::step::Run::new(structure, &options);
+        let placed = run.scaffold.place(&run.scaffold.start);
+        let selection = run.selection(&placed, false);
+        let (_, rows) = run.rows(&selection, &placed);
+        let held = |f: fn(&Hold) -> bool| structure.bodies.iter().filter(|b| f(&b.hold)).count();
+        StructureCheck {
+            schema: "snapfit.check-structure/1",
+            structure: structure.name.clone(),
+            bodies: structure.bodies.len(),
+            fixed: held(|h| *h == Hold::Fixed),
+            pinned: held(|h| matches!(h, Hold::Pin(_))),
+            vertices: structure.bodies.iter().map(|b| b.vertices.len()).sum(),
+            columns: run.scaffold.column_count,
+            rows: rows.len(),
+            facing: selection.facing.len(),
+            views: structure.views.len(),
+            joints: match &structure.joints {
+                None => "closeness: every two bodies nearer than epsilon".to_owned(),
+                Some(list) => format!(
+                    "{} named pairs of bodies",
+                    list.iter().map(|j| j.bodies.len()).sum::<usize>()
+                ),
+            },
+            objective: run.scaffold.has_objective(),
+            warnings,
+        }
+    }
+}
+
+impl std::fmt::Display for StructureCheck {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        writeln!(f, "structure {}", self.structure)?;
+        writeln!(
+            f,
+            "  bodies         {} ({} fixed, {} pinned) with {} vertices",
+            self.bodies, self.fixed, self.pinned, self.vertices
+        )?;
+        writeln!(f, "  joints         {}", self.joints)?;
+        writeln!(
+            f,
+            "  first program  {} rows × {} columns, {} pairs of facing corners, {} views",
+            self.rows, self.columns, self.facing, self.views
+        )?;
+        let asked = if self.objective {
+            "given"
+        } else {
+            "none: `flex` needs one"
+        };
+        writeln!(f, "  objective      {asked}")?;
+        for warning in &self.warnings {
+            writeln!(f, "{warning}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,538 @@
+//! Time stepping (PF §V-B): solve, move as far as the violation allows, build anew, solve again.
+//!
+//! At a configuration q the program's optimum q̇ is a direction. The step is the largest scale
+//! s ≤ 1 found by bisection for which the exact distances at the new configuration are violated by
+//! no more than the threshold; the next program enforces the constraints again, so errors do not
+//! add up. Stepping ends where a step gains less than asked.
+//!
+//! *Rounding.* A rotation by sδ is applied as the rational rotation of half-tangent sδ/2 (which
+//! agrees with it up to the third order), then tan(θ/2) is replaced by the simplest fraction near
+//! it and positions by multiples of a power of two. The radius of rounding is a small part of the
+//! threshold, so digits never pile up, and whatever rounding does to the constraints is seen by
+//! the same exact test, since it judges the rounded configuration.
+
+use super::branch::{self, Solved};
+use super::model::{Form, Row, Scaffold};
+use super::pairs::{Pair, Selection, select};
+use super::shape::{Placed, Pose, double};
+use super::types::Structure;
+use crate::lp::{self, Place, Places, Status};
+use crate::number::{Algebraic, Int, Poly, Rat};
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::time::{Duration, Instant};
+
+/// What facing convex corners become (PF §V-A).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Corners {
+    /// One half-plane, its normal averaged from the two edges of a corner.
+    #[default]
+    Average,
+    /// The exact disjunction: one of the four edges, found by branching.
+    Branch,
+}
+
+/// What a caller may choose.
+#[derive(Clone, Copy, Default)]
+pub struct FlexOptions<'a> {
+    /// How much is proven of every linear program.
+    pub accuracy: lp::Accuracy,
+    /// Who finds its basis.
+    pub method: lp::Method,
+    /// What becomes of facing corners.
+    pub corners: Corners,
+    /// Time after which stepping ends undecided.
+    pub time_limit: Option<Duration>,
+    /// Whether certificates are checked by the independent verifier.
+    pub verify: bool,
+    /// Told of every step as it begins.
+    pub progress: Option<&'a dyn Fn(FlexProgress)>,
+}
+
+/// Where a run is.
+#[derive(Clone, Copy, Debug)]
+pub struct FlexProgress {
+    /// Steps done.
+    pub step: usize,
+    /// Bodies of the structure.
+    pub bodies: usize,
+    /// Rows of the program at hand.
+    pub rows: usize,
+    /// Displacement so far.
+    pub displacement: f64,
+    /// What the last step gained.
+    pub gain: f64,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// A step gained less than asked.
+    Converged,
+    /// The number of steps was reached.
+    MostSteps,
+    /// The linear program is unbounded: something comes apart.
+    Unbounded,
+    /// No motion restores the constraints.
+    Infeasible,
+    /// The time was over.
+    Undecided,
+}
+
+impl Ending {
+    /// The word used in results.
+    pub fn word(self) -> &'static str {
+        match self {
+            Ending::Converged => "converged",
+            Ending::MostSteps => "most-steps",
+            Ending::Unbounded => "unbounded",
+            Ending::Infeasible => "infeasible",
+            Ending::Undecided => "undecided",
+        }
+    }
+}
+
+/// One step.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// The exact optimum of the linear program (for floats and bounds: the best value known).
+    pub objective: Rat,
+    /// A proven enclosure of the optimum.
+    pub enclosure: (Option<Rat>, Option<Rat>),
+    /// The scale at which its direction was applied.
+    pub scale: Rat,
+    /// Rows of the program.
+    pub rows: usize,
+    /// Facing corners.
+    pub facing: usize,
+    /// Programs solved for this step.
+    pub programs: usize,
+    /// Pivots of the exact method, over these programs' last.
+    pub exact_pivots: u64,
+    /// Wall-clock time of the step: model, program, search.
+    pub seconds: f64,
+    /// Part of it that went into pairs and rows.
+    pub model_seconds: f64,
+    /// Whether the certificate passed the verifier; None where it was not asked.
+    pub verified: Option<bool>,
+    /// The certificate as JSON; null where there is none.
+    pub certificate: serde_json::Value,
+    /// Exact gain in displacement.
+    pub gain: Rat,
+    /// Bits of the longest number of any pose afterwards.
+    pub bits: u64,
+}
+
+/// The result of a run.
+#[derive(Clone, Debug)]
+pub struct Flexed {
+    /// How it ended.
+    pub ending: Ending,
+    /// The steps, in order.
+    pub steps: Vec<Step>,
+    /// The configurations: the start, then one after each step.
+    pub configurations: Vec<Vec<Pose>>,
+    /// The weighted displacement, exact.
+    pub displacement: Rat,
+    /// The largest violation at the end (a distance), zero if there is none.
+    pub violation: Violation,
+    /// Columns of the programs.
+    pub columns: usize,
+}
+
+/// A distance whose square is rational.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Violation {
+    /// Its square.
+    pub square: Rat,
+    /// The constraint, where one is violated.
+    pub pair: Option<Pair>,
+}
+
+impl Violation {
+    /// The distance itself.
+    pub fn value(&self) -> Algebraic {
+        let s = &self.square;
+        if let (Some(n), Some(d)) = (s.numer().sqrt_exact(), s.denom().sqrt_exact()) {
+            return Algebraic::from(Rat::new(n, d));
+        }
+        let p = Poly::new(vec![-s.numer(), Int::zero(), s.denom().clone()]);
+        let roots = p.real_roots();
+        let largest = roots.into_iter().next_back();
+        largest.unwrap_or_else(|| Algebraic::from(Rat::zero()))
+    }
+}
+
+/// A run in the making.
+pub(crate) struct Run<'a> {
+    pub(crate) structure: &'a Structure,
+    pub(crate) scaffold: Scaffold,
+    pub(crate) options: &'a FlexOptions<'a>,
+    pub(crate) deadline: Option<Instant>,
+    grain: Grain,
+    /// The last optimal basis: places of the columns, and of rows by pair.
+    memory: RefCell<Option<Memory>>,
+}
+
+type Memory = (Vec<Place>, HashMap<Pair, Place>);
+
+/// Radii of rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grain {
+    /// Positions are multiples of 2⁻ᵏ for this k.
+    place_bits: u32,
+    /// tan(θ/2) may move by this much times (1 + tan²).
+    turn: f64,
+}
+
+impl Grain {
+    /// A grain for poses that are to be kept within a distance.
+    pub(crate) fn of(distance: f64, reach: f64) -> Grain {
+        let bits = (-distance.log2()).ceil().clamp(0.0, 50.0) as u32 + 1;
+        Grain {
+            place_bits: bits,
+            turn: (distance / (4.0 * reach.max(1e-9))).clamp(1e-15, 1e-3),
+        }
+    }
+}
+
+/// The least violation that rounding is allowed to make, as a part of the threshold.
+const GRAIN_PART: f64 = 1.0 / 1024.0;
+/// Bisections of a step's scale.
+const HALVINGS: usize = 8;
+
+/// Flexes a structure: PF's procedure from its first configuration to convergence.
+///
+/// Cost: a linear program a step; building it is near-linear in the bodies.
+pub fn flex(structure: &Structure, options: &FlexOptions<'_>) -> Flexed {
+    Run::new(structure, options).flex()
+}
+
+impl<'a> Run<'a> {
+    pub(crate) fn new(structure: &'a Structure, options: &'a FlexOptions<'a>) -> Run<'a> {
+        let scaffold = Scaffold::new(structure);
+        let reach = scaffold.shapes.iter().map(|s| s.reach).fold(0.0, f64::max);
+        let gain = double(&structure.step.gain);
+        let grain = (double(&structure.step.violation) * GRAIN_PART).min(gain / 4.0);
+        Run {
+            structure,
+            grain: Grain::of(grain, reach),
+            scaffold,
+            options,
+            memory: RefCell::new(None),
+            deadline: options
+                .time_limit
+                .and_then(|t| Instant::now().checked_add(t)),
+        }
+    }
+
+    fn late(&self) -> bool {
+        self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
+    /// What the program of these rows may still take, and the last basis as its start.
+    pub(crate) fn lp_options(&self, rows: &[Row]) -> lp::Options {
+        let memory = self.memory.borrow();
+        let basis = memory.as_ref().map(|(columns, places)| Places {
+            columns: columns.clone(),
+            // A row that is new is slack until shown otherwise.
+            rows: rows
+                .iter()
+                .map(|r| places.get(&r.pair).copied().unwrap_or(Place::Basic))
+                .collect(),
+        });
+        lp::Options {
+            method: self.options.method,
+            accuracy: self.options.accuracy,
+            time_limit: self
+                .deadline
+                .map(|d| d.saturating_duration_since(Instant::now())),
+            basis,
+            ..lp::Options::default()
+        }
+    }
+
+    /// Keeps an optimal basis for the next program, by the names of the rows.
+    pub(crate) fn remember(&self, rows: &[Row], outcome: &lp::Outcome) {
+        if let (Status::Optimal, Some(basis)) = (outcome.status, &outcome.basis) {
+            let places = rows.iter().map(|r| r.pair).zip(basis.rows.iter().copied());
+            *self.memory.borrow_mut() = Some((basis.columns.clone(), places.collect()));
+        }
+    }
+
+    fn flex(&self) -> Flexed {
+        let rules = &self.structure.step;
+        let mut poses = self.scaffold.start.clone();
+        let mut out = Flexed {
+            ending: Ending::MostSteps,
+            steps: Vec::new(),
+            configurations: vec![poses.clone()],
+            displacement: Rat::zero(),
+            violation: Violation {
+                square: Rat::zero(),
+                pair: None,
+            },
+            columns: self.scaffold.column_count,
+        };
+        let mut last_gain = 0.0;
+        let mut pairs = Vec::new();
+        for k in 0..rules.most {
+            if self.late() {
+                out.ending = Ending::Undecided;
+                break;
+            }
+            let begin = Instant::now();
+            let placed = self.scaffold.place(&poses);
+            let selection = self.selection(&placed, k > 0);
+            let (selected, rows) = self.rows(&selection, &placed);
+            pairs = selected;
+            let model_seconds = begin.elapsed().as_secs_f64();
+            if let Some(tell) = self.options.progress {
+                tell(FlexProgress {
+                    step: k,
+                    bodies: self.scaffold.forms.len(),
+                    rows: rows.len(),
+                    displacement: double(&out.displacement),
+                    gain: last_gain,
+                });
+            }
+            let solved = branch::solve(self, &rows, &selection, &placed, &poses);
+            let Some(direction) = &solved.direction else {
+                out.ending = match solved.status {
+                    Status::Unbounded => Ending::Unbounded,
+                    Status::Infeasible => Ending::Infeasible,
+                    _ => Ending::Undecided,
+                };
+                self.note(
+                    &mut out,
+                    begin,
+                    model_seconds,
+                    &rows,
+                    &solved,
+                    Rat::zero(),
+                    &poses,
+                );
+                break;
+            };
+            let (scale, next) = self.search(&pairs, &poses, direction);
+            let reached = self.scaffold.displacement(&next);
+            let gain = &reached - &out.displacement;
+            out.displacement = reached;
+            poses = next;
+            out.configurations.push(poses.clone());
+            self.note(
+                &mut out,
+                begin,
+                model_seconds,
+                &rows,
+                &solved,
+                scale,
+                &poses,
+            );
+            if let Some(step) = out.steps.last_mut() {
+                step.gain = gain.clone();
+            }
+            last_gain = double(&gain);
+            if gain.abs() < rules.gain {
+                out.ending = Ending::Converged;
+                break;
+            }
+        }
+        let placed = self.scaffold.place(&poses);
+        if pairs.is_empty() {
+            pairs = self.selection(&placed, true).pairs;
+        }
+        out.violation = self.worst(&pairs, &placed);
+        out
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn note(
+        &self,
+        out: &mut Flexed,
+        begin: Instant,
+        model_seconds: f64,
+        rows: &[Row],
+        solved: &Solved,
+        scale: Rat,
+        poses: &[Pose],
+    ) {
+        out.steps.push(Step {
+            objective: solved.objective.clone(),
+            enclosure: solved.enclosure.clone(),
+            scale,
+            rows: rows.len(),
+            facing: solved.facing,
+            programs: solved.programs,
+            exact_pivots: solved.exact_pivots,
+            seconds: begin.elapsed().as_secs_f64(),
+            model_seconds,
+            verified: solved.verified,
+            certificate: solved.certificate.clone(),
+            gain: Rat::zero(),
+            bits: poses.iter().map(Pose::bits).max().unwrap_or(0),
+        });
+    }
+
+    /// The pairs of a configuration. At the start nothing overlaps; later on a vertex may lie
+    /// inside an edge by the violation that was allowed.
+    pub(crate) fn selection(&self, placed: &[Placed], moved: bool) -> Selection {
+        let slack = if moved {
+            &self.structure.step.violation * &Rat::from(2)
+        } else {
+            Rat::zero()
+        };
+        select(&self.scaffold, placed, &slack)
+    }
+
+    /// All rows that hold together: the pairs and, where corners are averaged, theirs.
+    pub(crate) fn rows(&self, selection: &Selection, placed: &[Placed]) -> (Vec<Pair>, Vec<Row>) {
+        let mut pairs = selection.pairs.clone();
+        if self.options.corners == Corners::Average {
+            pairs.extend(self.scaffold.averaged(&selection.facing));
+        }
+        let rows = pairs.iter().map(|p| self.scaffold.row(p, placed)).collect();
+        (pairs, rows)
+    }
+
+    /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
+    /// configuration there.
+    fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
+        let allowed = &self.structure.step.violation;
+        let at = |scale: f64| self.moved(poses, direction, scale);
+        let good = |poses: &[Pose]| !self.exceeds(pairs, &self.scaffold.place(poses), allowed);
+        let whole = at(1.0);
+        if good(&whole) {
+            return (Rat::one(), whole);
+        }
+        let (mut low, mut high) = (0.0f64, 1.0f64);
+        let mut best = poses.to_vec();
+        for _ in 0..HALVINGS {
+            let middle = (low + high) / 2.0;
+            let there = at(middle);
+            if good(&there) {
+                (low, best) = (middle, there);
+            } else {
+                high = middle;
+            }
+        }
+        (Rat::from_f64(low), best)
+    }
+
+    /// The configuration after a direction at a scale, rounded.
+    pub(crate) fn moved(&self, poses: &[Pose], direction: &[[f64; 3]], scale: f64) -> Vec<Pose> {
+        let each = poses.iter().zip(direction).zip(&self.scaffold.forms);
+        each.map(|((pose, d), form)| match form {
+            Form::Fixed => pose.clone(),
+            _ => self.grain.advance(pose, d.map(|v| v * scale)),
+        })
+        .collect()
+    }
+
+    /// Whether a pair is violated by more than a distance, exactly.
+    pub(crate) fn exceeds(&self, pairs: &[Pair], placed: &[Placed], allowed: &Rat) -> bool {
+        let near = double(allowed);
+        pairs.iter().any(|pair| {
+            let (d, error) = self.scaffold.near(pair, placed);
+            let error = error + near * 1e-15;
+            if d + error < -near {
+                return true;
+            }
+            if d - error > -near {
+                return false;
+            }
+            let row = self.scaffold.row(pair, placed);
+            row.d0.sign() < 0 && violation(&row) > allowed.square()
+        })
+    }
+
+    /// The largest violation, exactly.
+    pub(crate) fn worst(&self, pairs: &[Pair], placed: &[Placed]) -> Violation {
+        let near: Vec<(f64, f64)> = pairs
+            .iter()
+            .map(|p| self.scaffold.near(p, placed))
+            .collect();
+        let bound = near.iter().map(|(d, e)| d + e).fold(0.0, f64::min);
+        let mut out = Violation {
+            square: Rat::zero(),
+            pair: None,
+        };
+        for (pair, (d, e)) in pairs.iter().zip(&near) {
+            if d - e > bound {
+                continue;
+            }
+            let row = self.scaffold.row(pair, placed);
+            if row.d0.sign() < 0 {
+                let square = violation(&row);
+                if square > out.square {
+                    out = Violation {
+                        square,
+                        pair: Some(*pair),
+                    };
+                }
+            }
+        }
+        out
+    }
+}
+
+/// d² of a row: d₀² over the squared length of its normal.
+pub(crate) fn violation(row: &Row) -> Rat {
+    let [x, y] = &row.normal;
+    Rat::new(&row.d0 * &row.d0, x * x + y * y)
+}
+
+impl Grain {
+    /// A pose moved by (dx, dy, dθ) and rounded. Doubles are good enough for what is rounded
+    /// anyway; a motion that is no number leaves the pose as it is.
+    pub(crate) fn advance(&self, pose: &Pose, by: [f64; 3]) -> Pose {
+        if by.iter().any(|v| !v.is_finite()) {
+            return pose.clone();
+        }
+        let half = by[2] / 2.0;
+        let u = double(&pose.tan_half);
+        let turned = (u + half) / (1.0 - u * half);
+        let tan_half = if half == 0.0 || !turned.is_finite() {
+            pose.tan_half.clone()
+        } else {
+            let radius = self.turn * (1.0 + turned * turned);
+            simplest(
+                &Rat::from_f64(turned - radius),
+                &Rat::from_f64(turned + radius),
+            )
+        };
+        let shift = |at: &Rat, d: f64| {
+            if d == 0.0 {
+                return at.clone();
+            }
+            let scale = Int::one().shl(u64::from(self.place_bits));
+            let moved = (at + &Rat::from_f64(d)) * Rat::from(scale.clone());
+            Rat::new((moved + Rat::frac(1, 2)).floor(), scale)
+        };
+        Pose {
+            place: crate::geometry::Vec2::new(
+                shift(&pose.place.x, by[0]),
+                shift(&pose.place.y, by[1]),
+            ),
+            tan_half,
+        }
+    }
+}
+
+/// The fraction of least denominator in [lo, hi] (lo ≤ hi), by continued fractions.
+pub(crate) fn simplest(lo: &Rat, hi: &Rat) -> Rat {
+    if lo.sign() <= 0 && hi.sign() >= 0 {
+        return Rat::zero();
+    }
+    if hi.sign() < 0 {
+        return -simplest(&-hi, &-lo);
+    }
+    let whole = lo.ceil();
+    if Rat::from(whole.clone()) <= *hi {
+        return Rat::from(whole);
+    }
+    // Both share their whole part, and neither is whole.
+    let whole = Rat::from(lo.floor());
+    let rest = simplest(&(hi - &whole).recip(), &(lo - &whole).recip());
+    whole + rest.recip()
+}
