@@ -25,5 +25,5 @@ pub mod stretch;
 pub mod total;
 
 pub use classify::{Ask, Verdict};
-pub use document::{ClassifyDocument, classify};
+pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};
 pub use forces::{ForcesDocument, Wish, forces};
