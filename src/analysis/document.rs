@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
-use super::escape::Ground;
+use super::escape::{Ground, lasting};
 use super::peak::Peak;
 use super::total::{Arc, Flip, Sample, Total, total};
 use crate::contact::{Contact, ContactKind};
@@ -204,6 +204,10 @@ fn stop(scene: &Scene, run: &Trajectory) -> StopDocument {
 }
 
 impl ClassifyDocument {
+    /// Whether a direction gets out, or would but for the force limit.
+    pub fn gets_out(&self) -> bool {
+        self.escape.is_some() || self.directions.iter().any(|d| d.plan.is_some())
+    }
     /// Whether a limit kept the question open: of the family, or of part of the circle.
     pub fn undecided(&self) -> bool {
         let open = self.class.is_none()
@@ -220,13 +224,49 @@ impl ClassifyDocument {
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn classify(scene: &Scene, ask: &Ask) -> Result<ClassifyDocument, PlanError> {
+    Ok(classify_with_way(scene, ask)?.0)
+}
+
+/// As [`classify`], with the motion that decides: a velocity and a duration from the end of the
+/// plan. It is the escape of the circle if there is one, else the family's weakest direction.
+///
+/// # Errors
+/// [`PlanError`] where the plan asks for what cannot be.
+pub fn classify_with_way(
+    scene: &Scene,
+    ask: &Ask,
+) -> Result<(ClassifyDocument, Option<(Vec2, Rat)>), PlanError> {
     let family = relative(scene, ask)?;
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
         let ground = Ground::new(scene, ask.deadline);
         total(&ground, start, family.class)
     });
-    Ok(written(scene, &family, circle.as_ref()))
+    let weakest = family.directions.iter().min_by_key(|d| d.verdict);
+    let relative_way = weakest.map(|d| (d.velocity.clone(), run_time(d)));
+    let way = match circle.as_ref() {
+        Some(t) if family.class != Some(Verdict::None) => {
+            let way = t.escape.as_ref().map(|w| {
+                let lasts = lasting(w, &t.distance.square()).0;
+                (w.clone(), lasts)
+            });
+            way.or(relative_way)
+        }
+        _ => relative_way,
+    };
+    Ok((written(scene, &family, circle.as_ref()), way))
+}
+
+/// A rational duration in which a direction's motion has run its course.
+fn run_time(d: &Direction) -> Rat {
+    let end = &d.run.outcome.time;
+    match end.as_rat() {
+        // A little longer, where it ends for another reason than its length.
+        Some(t) if d.run.outcome.kind == OutcomeKind::Completed => t.clone(),
+        Some(t) => t + &Rat::one(),
+        None if d.run.outcome.kind == OutcomeKind::Completed => Rat::from_f64(end.interval().hi),
+        None => Rat::from_f64(end.interval().hi) + Rat::frac(1, 1024),
+    }
 }
 
 fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> ClassifyDocument {
@@ -382,17 +422,11 @@ fn arc_reason(scene: &Scene, a: &Arc) -> String {
 fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
     let out = d.run.outcome.kind == OutcomeKind::Completed;
     let plan = out.then(|| {
-        let lasted = d.run.outcome.time.interval().hi;
-        let lasted = d
-            .run
-            .outcome
-            .time
-            .as_rat()
-            .cloned()
-            .unwrap_or_else(|| Rat::from_f64(lasted));
         format!(
-            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{lasted}\"\n",
-            d.velocity.x, d.velocity.y
+            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{}\"\n",
+            d.velocity.x,
+            d.velocity.y,
+            run_time(d)
         )
     });
     DirectionDocument {

@@ -12,6 +12,7 @@ mod cells;
 pub mod classify;
 pub mod critical;
 pub mod document;
+pub mod draw;
 mod drive;
 pub mod escape;
 pub mod fix;
@@ -22,6 +23,7 @@ mod load;
 pub mod peak;
 mod qpoly;
 pub mod stretch;
+pub mod summary;
 pub mod total;
 
 pub use classify::{Ask, Verdict};
