@@ -12,7 +12,7 @@ mod num;
 pub mod picture;
 pub mod summary;
 pub(crate) mod theta;
-mod words;
+pub(crate) mod words;
 
 pub use layout::pretty;
 pub use num::{Exact, Num};

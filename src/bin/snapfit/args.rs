@@ -77,6 +77,16 @@ pub(crate) struct Classify {
     /// total- before it, unless it is total too
     #[arg(long, value_name = "CLASS")]
     pub(crate) expect: Option<String>,
+    /// Draw the motion that decides (the escape, where there is one) and, where every direction is
+    /// asked for, the rose of directions, as SVG to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Where a way out was found: write the scene with it appended to its plan, as TOML to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) escape: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]
@@ -240,4 +250,8 @@ pub(crate) enum Name {
     Structure,
     /// The result of `simulate`
     Result,
+    /// The result of `classify`
+    Classify,
+    /// The result of `forces`
+    Forces,
 }

@@ -11,14 +11,12 @@ mod flex_render;
 mod output;
 mod progress;
 mod trade;
+mod verdict;
 
-use args::{
-    Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
-    Simulate, Verb,
-};
+use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render, Simulate, Verb};
 use clap::Parser;
 use clap::error::ErrorKind;
-use snapfit::analysis::{self, Ask, Verdict};
+use snapfit::analysis;
 use snapfit::kernel::{FloatOptions, Identify};
 use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
@@ -64,8 +62,8 @@ fn main() -> ExitCode {
 fn run(verb: &Verb) -> Result<u8, Failure> {
     match verb {
         Verb::Simulate(args) => run_simulate(args),
-        Verb::Classify(args) => run_classify(args),
-        Verb::Forces(args) => run_forces(args),
+        Verb::Classify(args) => verdict::run_classify(args),
+        Verb::Forces(args) => verdict::run_forces(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
         Verb::Face(args) => {
@@ -84,6 +82,8 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
                 Name::Scene => scene::scene_schema(),
                 Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
+                Name::Classify => analysis::classify_schema(),
+                Name::Forces => analysis::forces_schema(),
             };
             let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
             output::write(args.out.as_deref(), &(pretty(&compact, 100) + "\n"))?;
@@ -101,70 +101,6 @@ fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
     };
     output::write(args.common.out.as_deref(), &text)?;
     Ok(status(&trajectory))
-}
-
-fn ask(engine: &Engine) -> Result<Ask, Failure> {
-    provenance(engine)?;
-    Ok(Ask {
-        deadline: engine
-            .time_limit
-            .and_then(|limit| Instant::now().checked_add(limit)),
-        critical: true,
-    })
-}
-
-fn run_classify(args: &Classify) -> Result<u8, Failure> {
-    let expected = match &args.expect {
-        None => None,
-        Some(word) => {
-            let class = word.strip_prefix("total-").unwrap_or(word);
-            let class = Verdict::from_name(class).ok_or_else(|| {
-                format!("--expect {word}: expected none, force, friction, kinematic, or total- and one of them")
-            })?;
-            Some((class.name(), word.starts_with("total-")))
-        }
-    };
-    let file = read(&args.common)?;
-    let document = analysis::classify(file.scene(), &ask(&args.engine)?)
-        .map_err(|error| misplanned(&file, &error))?;
-    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
-    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
-    if document.undecided() {
-        return Ok(UNDECIDED);
-    }
-    match expected {
-        Some((class, total))
-            if document.class != Some(class) || total && document.extent != Some("total") =>
-        {
-            let extent = document.extent.unwrap_or("no");
-            let class = document.class.unwrap_or("no class");
-            let _ = writeln!(
-                std::io::stderr(),
-                "snapfit: not as expected: {class}, {extent} diode; {}",
-                document.reason
-            );
-            Ok(UNEXPECTED)
-        }
-        _ => Ok(DECIDED),
-    }
-}
-
-fn run_forces(args: &Forces) -> Result<u8, Failure> {
-    let file = read(&args.common)?;
-    let wish = analysis::Wish {
-        digits: args.digits,
-        samples: args.samples,
-        draw: args.svg.is_some(),
-    };
-    let document = analysis::forces(file.scene(), &wish, &ask(&args.engine)?)
-        .map_err(|error| misplanned(&file, &error))?;
-    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
-    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
-    Ok(if document.outcome == OutcomeKind::Undecided.name() {
-        UNDECIDED
-    } else {
-        DECIDED
-    })
 }
 
 fn run_check(args: &Check) -> Result<u8, Failure> {
