@@ -1,7 +1,7 @@
 //! Polygons prepared for contact: edges with outward normals, vertices with their convexity.
 
 use crate::geometry::Vec2;
-use crate::number::{Rat, Scalar};
+use crate::number::{Enclosed, Rat, Scalar};
 use crate::scene::{Obstacle, Pawl};
 
 /// A closed ring of vertices in listing order, with the side on which the solid lies.
@@ -38,6 +38,14 @@ impl<R: Scalar> Ring<R> {
             vertices,
             normals,
             convex,
+        }
+    }
+    /// The ring in certified intervals.
+    pub(super) fn enclosed(&self) -> Ring<Enclosed> {
+        Ring {
+            vertices: self.vertices.iter().map(Vec2::enclosed).collect(),
+            normals: self.normals.iter().map(Vec2::enclosed).collect(),
+            convex: self.convex.clone(),
         }
     }
     /// Number of vertices, and of edges.

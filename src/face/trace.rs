@@ -110,7 +110,13 @@ pub(crate) struct Tracer<'a> {
     pub(super) serial: u32,
     pub(super) mark: Vec<u32>,
     pub(super) mark_serial: u32,
+    /// The vertices of many arcs that an item passes through.
+    pub(super) busy: FastMap<u32, Vec<u32>>,
+    /// Pairs tested for a meeting, and how many may be before the walk is given up.
+    pub(super) tests: u64,
+    pub(super) budget: u64,
     /// Buffers.
+    pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
@@ -153,6 +159,10 @@ impl<'a> Tracer<'a> {
             serial: 0,
             mark: vec![0; items.len()],
             mark_serial: 0,
+            busy: FastMap::default(),
+            tests: 0,
+            budget: u64::MAX,
+            through: Vec::new(),
             hits: Vec::new(),
             near: Vec::new(),
             numbers: Vec::new(),
@@ -245,6 +255,9 @@ impl<'a> Tracer<'a> {
         let vertex = &mut self.vertices[v as usize];
         vertex.germs = from as u32;
         vertex.germ_count = (to - from) as u32;
+        if many {
+            self.remember(v);
+        }
         (from, to)
     }
 
@@ -279,6 +292,9 @@ impl<'a> Tracer<'a> {
         let (mut v, mut g) = (v0, g0);
         let (mut leftmost, mut hole, mut count) = (NONE, false, 0);
         loop {
+            if self.tests > self.budget {
+                return;
+            }
             let Germ {
                 item,
                 dir,
@@ -418,6 +434,9 @@ impl<'a> Tracer<'a> {
                 .germ_below(item, from.x, true)
                 .expect("every germ is made when asked for");
             self.trace(v, g);
+            if self.tests > self.budget {
+                return Ok(());
+            }
             let cycle = self.cycles[self.cycles.len() - 1];
             if !cycle.hole {
                 return Ok(());
@@ -622,6 +641,14 @@ fn index(k: &Kernel, items: &mut [Item]) -> Tree {
         }
     }
     Tree::new(entries)
+}
+
+/// A hull of a whole item.
+pub(crate) fn hull_of(k: &Kernel, item: &Item) -> Hull {
+    match item.carrier {
+        Carrier::Graph(c) => k.hull(c, k.enclosure(item.l).0, k.enclosure(item.r).1),
+        Carrier::Vertical(..) => Hull::boxed(box_of(k, item)),
+    }
 }
 
 fn box_of(k: &Kernel, item: &Item) -> Bounds {

@@ -134,6 +134,7 @@ fn to_rat(x: f64) -> Rat {
 }
 
 impl Scalar for Double {
+    const EXACT: bool = false;
     fn from_rat(r: &Rat) -> Double {
         Double(r.nearest_f64().unwrap_or(if r.sign() < 0 {
             f64::NEG_INFINITY
@@ -656,6 +657,9 @@ impl Position<Float> for Place {
     fn of(x: Double) -> Place {
         place(x.0)
     }
+    fn same(&self, o: &Place) -> bool {
+        Rc::ptr_eq(&self.0, &o.0)
+    }
     fn renew(&self) -> Place {
         place(self.get())
     }
@@ -694,6 +698,9 @@ impl Position<Float> for Place {
 impl Instant<Float> for Moment {
     fn of(t: Double) -> Moment {
         moment(t.0)
+    }
+    fn same(&self, o: &Moment) -> bool {
+        Rc::ptr_eq(&self.0, &o.0)
     }
     fn ratio(x: &Place, num: FloatPoly, den: FloatPoly) -> Moment {
         let x = x.get();

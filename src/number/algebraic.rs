@@ -87,6 +87,23 @@ impl Algebraic {
             Root::enclosed(p, y, -1).into(),
         ]
     }
+    /// Whether both are handles of one number (no arithmetic; false proves nothing).
+    pub fn same_handle(&self, o: &Algebraic) -> bool {
+        match (&self.0, &o.0) {
+            (Rational(a), Rational(b)) => Arc::ptr_eq(a, b),
+            (RootOf(a), RootOf(b)) => Arc::ptr_eq(a, b),
+            (QuotientOf(a), QuotientOf(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+    /// Counts the question where both are handles of one number.
+    fn named_alike(&self, o: &Algebraic) -> bool {
+        let same = self.same_handle(o);
+        if same {
+            filter::settled(Stage::Name);
+        }
+        same
+    }
     /// The same number as a rational or a root.
     fn settled(&self) -> &Algebraic {
         match &self.0 {
@@ -581,6 +598,9 @@ impl From<Root> for Algebraic {
 }
 impl PartialEq for Algebraic {
     fn eq(&self, o: &Algebraic) -> bool {
+        if self.named_alike(o) {
+            return true;
+        }
         if let Some(o) = told_apart(&self.interval(), &o.interval()) {
             return o.is_eq();
         }
@@ -622,6 +642,9 @@ impl Quotient {
 }
 impl Ord for Algebraic {
     fn cmp(&self, o: &Algebraic) -> Ordering {
+        if self.named_alike(o) {
+            return Ordering::Equal;
+        }
         if let Some(o) = told_apart(&self.interval(), &o.interval()) {
             return o;
         }

@@ -11,8 +11,8 @@ pub mod ledger;
 mod num;
 pub mod picture;
 pub mod summary;
-mod theta;
-mod words;
+pub(crate) mod theta;
+pub(crate) mod words;
 
 pub use layout::pretty;
 pub use num::{Exact, Num};

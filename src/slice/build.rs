@@ -1,8 +1,9 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
-use super::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
+use super::{Arc, ArcId, Curve, CurveId, End, Point, Shape, Side};
 use crate::contact::{
-    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig,
+    patches_within,
 };
 use crate::geometry::Vec2;
 use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
@@ -23,6 +24,8 @@ pub struct Slice<K: Kernel = Filtered> {
     /// The patch that each arc was cut from (none for a limit stop).
     pub(super) patch_of: Vec<Option<u32>>,
     pub(super) patches: Vec<Patch<K::Num>>,
+    /// Per curve, the named points that it passes through.
+    pub(super) named: Vec<Vec<super::Point<K>>>,
     pub(super) crossings: Mutex<super::predicates::CrossCache<K>>,
 }
 
@@ -36,8 +39,8 @@ impl<K: Kernel> Slice<K> {
         obstacles: &[ObstacleShape<K::Num>],
         limits: Option<&(K::Num, K::Num)>,
     ) -> Slice<K> {
-        let patches = patches(&frame, pawl, obstacles);
-        let mut b = Builder::new(frame, pawl, obstacles);
+        let patches = patches_within(&frame, pawl, obstacles);
+        let mut b = Builder::<K>::new(frame, pawl, obstacles);
         for (i, patch) in patches.iter().enumerate() {
             b.add(patch, i as u32);
         }
@@ -49,7 +52,22 @@ impl<K: Kernel> Slice<K> {
         for (i, a) in b.arcs.iter().enumerate() {
             by_chart[a.chart.index()].push(i as ArcId);
         }
+        let mut named: Vec<Vec<Point<K>>> = vec![Vec::new(); b.curves.len()];
+        for (curve, chart, n) in &b.through {
+            let known = &mut named[*curve as usize];
+            if let Some(t) = n.t.get()
+                && !known.iter().any(|p| p.x.same(&n.x))
+            {
+                known.push(Point {
+                    chart: *chart,
+                    x: n.x.clone(),
+                    t: t.clone(),
+                    on: vec![*curve],
+                });
+            }
+        }
         Slice {
+            named,
             frame: b.frame,
             curves: b.curves,
             arcs: b.arcs,
@@ -116,6 +134,8 @@ struct Builder<'a, K: Kernel> {
     minus_one: K::Num,
     one: K::Num,
     speed2: K::Num,
+    /// Curves and the named points on them.
+    through: Vec<(CurveId, Chart, Rc<Named<K>>)>,
 }
 
 /// Supporting lines (normal, offset) numbered so that collinear edges share a number.
@@ -252,6 +272,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
             minus_one: K::Num::one().negated(),
             one: K::Num::one(),
             speed2,
+            through: Vec::new(),
         }
     }
 
@@ -344,6 +365,9 @@ impl<'a, K: Kernel> Builder<'a, K> {
             return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
         };
         for chart in Chart::BOTH {
+            if !patch.charts[chart.index()] {
+                continue;
+            }
             let c = &self.curves[curve as usize];
             let (p, q) = (in_chart::<K>(&c.p, chart), in_chart::<K>(&c.q, chart));
             let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
@@ -433,6 +457,12 @@ impl<'a, K: Kernel> Builder<'a, K> {
             }
         }
         self.wedge_breaks(patch, chart, &mut breaks);
+        // A name may lie on the curve's level instead, at another time.
+        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
+        if !factored && K::names() {
+            let points = breaks.iter().filter_map(|b| b.point.clone());
+            self.through.extend(points.map(|n| (curve, chart, n)));
+        }
         // dt/dx = −(P'Q − PQ')/Q².
         let bend = rp.derivative().times(rq).minus(&rp.times(&rq.derivative()));
         for n in self
@@ -445,7 +475,6 @@ impl<'a, K: Kernel> Builder<'a, K> {
             });
         }
         self.plain_breaks(rq, &mut breaks);
-        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
         if factored {
             self.plain_breaks(
                 &if p.is_zero() { q.clone() } else { p.common(q) },
@@ -472,7 +501,6 @@ impl<'a, K: Kernel> Builder<'a, K> {
             let up = bend_sign * f1;
             let end = |b: &Break<K>| {
                 let t = || K::Time::ratio(&b.x, rp.negated(), rq.clone());
-                // A name may lie on the curve's level instead, at another time.
                 let t = match &b.point {
                     Some(n) if !factored && K::names() => n.t.get_or_init(t).clone(),
                     _ => t(),

@@ -41,6 +41,8 @@ pub(crate) enum Verb {
     Lp(snapfit::lp::cli::LpArgs),
     /// Check a linear program's certificate with code of its own
     Verify(snapfit::lp::cli::VerifyArgs),
+    /// Speed against accuracy over the arithmetics: table, JSON and plot
+    Trade(super::trade::Trade),
     /// Print the JSON Schema of a file format
     Schema(Schema),
 }
@@ -75,6 +77,16 @@ pub(crate) struct Classify {
     /// total- before it, unless it is total too
     #[arg(long, value_name = "CLASS")]
     pub(crate) expect: Option<String>,
+    /// Draw the motion that decides (the escape, where there is one) and, where every direction is
+    /// asked for, the rose of directions, as SVG to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Where a way out was found: write the scene with it appended to its plan, as TOML to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) escape: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]
@@ -84,8 +96,17 @@ pub(crate) struct Forces {
     #[command(flatten)]
     pub(crate) engine: Engine,
     /// Significant digits of every enclosure
-    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) digits: u32,
+    /// Instants of each phase at which the histories are given
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=10000))]
+    pub(crate) samples: u32,
+    /// Draw force over travel as SVG, to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]
@@ -106,6 +127,12 @@ pub(crate) struct Render {
     /// Draw as SVG, to PATH or to standard output
     #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "-")]
     pub(crate) svg: Option<PathBuf>,
+    /// Of a structure: so many pictures of its way, PATH with a number before its ending
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: Option<u32>,
+    /// Of a structure: how much is proven of every linear program
+    #[arg(long, value_enum, default_value = "exact")]
+    pub(crate) accuracy: crate::flex::Accuracy,
 }
 
 #[derive(Args)]
@@ -155,7 +182,7 @@ pub(crate) struct Engine {
     pub(crate) time_limit: Option<Duration>,
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
     let t: f64 = text.parse().map_err(|_| "expected a number".to_owned())?;
     if t.is_finite() && t >= 0.0 {
         Ok(t)
@@ -223,4 +250,8 @@ pub(crate) enum Name {
     Structure,
     /// The result of `simulate`
     Result,
+    /// The result of `classify`
+    Classify,
+    /// The result of `forces`
+    Forces,
 }

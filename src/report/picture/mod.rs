@@ -9,12 +9,14 @@ mod names;
 mod panels;
 mod plot;
 mod stage;
-mod svg;
+mod structure;
+pub(crate) mod svg;
 
 use super::json::ResultDocument;
 use super::words::{headline, reason};
 use crate::scene::Scene;
 use stage::Stage;
+pub use structure::{StructurePicture, structure_svg};
 use svg::{INK, MUTED, Svg, text_width};
 
 /// Width of the page; its height follows.
