@@ -157,6 +157,7 @@ impl<'a> Ground<'a> {
                     probe: collision.as_ref().map(|c| &c.0),
                     stop: &stop,
                     method: crate::motion::Method::Naive,
+                    known: None,
                 };
                 run(&slice, &set, &start.angles[i], &[])
             })

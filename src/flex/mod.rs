@@ -34,8 +34,8 @@ mod step;
 mod types;
 mod write;
 
-pub use mps::to_mps;
 pub use motion::{Contact as FirstContact, ProofSize};
+pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
 pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
 pub use schema::structure_schema;

@@ -34,7 +34,7 @@ pub mod trajectory;
 
 pub use ledger::Ledger;
 pub use phase::Method;
-pub use plan::{Arithmetic, Options, PlanError, simulate};
+pub use plan::{Arithmetic, Options, PlanError, Seen, simulate, slices};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
     Trajectory,

@@ -15,7 +15,7 @@ use crate::contact::{Chart, Contact};
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
 use crate::kernel::{Filtered, Instant, Kernel, Position};
 use crate::number::{Rat, Scalar};
-use crate::slice::{ArcId, Configuration, Free, Point, Shape, Slice};
+use crate::slice::{ArcId, Configuration, Free, Point, Shape, Slice, Whereabouts};
 use std::rc::Rc;
 
 /// What one pawl's run through a phase yields.
@@ -37,6 +37,8 @@ pub struct Run<K: Kernel = Filtered> {
     pub degenerate: u64,
     /// What ran: the simple algorithm also where the slice cannot be swept.
     pub method: Method,
+    /// F, where the sweep ran; the first, if it led on into another.
+    pub free: Option<Rc<Free>>,
 }
 
 /// What a pawl's run needs besides the slice.
@@ -57,6 +59,8 @@ pub struct Setting<'a> {
     pub stop: &'a dyn Fn() -> bool,
     /// Which arcs are looked at.
     pub method: Method,
+    /// F of another run through the slice: it is not made again if it holds this run's start too.
+    pub known: Option<Rc<Free>>,
 }
 
 /// Which algorithm runs. Both give the same answers.
@@ -103,6 +107,7 @@ struct Runner<'a, K: Kernel> {
     sight: Box<dyn Sight<K> + 'a>,
     /// What ran.
     method: Method,
+    free: Option<Rc<Free>>,
     degenerate: u64,
 }
 
@@ -135,6 +140,7 @@ pub fn run<K: Kernel>(
         probed: None,
         sight: Box::new(All::new(slice)),
         method: Method::Naive,
+        free: None,
         degenerate: 0,
     };
     let stop = r.go(start, touching);
@@ -317,11 +323,20 @@ impl<K: Kernel> Runner<'_, K> {
     fn look_from(&mut self, at: Option<Spot<K>>) {
         let free = at.and_then(|(chart, x, t)| {
             let (x, t) = (x.to_rat(), t.to_rat());
-            Free::new(self.slice, &Configuration { chart, x, t })
+            let at = Configuration { chart, x, t };
+            let known = self.free.iter().chain(&self.set.known);
+            match known
+                .into_iter()
+                .find(|f| f.locate(&at) == Whereabouts::Inside)
+            {
+                Some(f) => Some(f.clone()),
+                None => Free::new(self.slice, &at).map(Rc::new),
+            }
         });
         match free {
             Some(free) => {
-                self.sight = Box::new(Sweep::new(self.slice, Rc::new(free)));
+                self.free.get_or_insert_with(|| free.clone());
+                self.sight = Box::new(Sweep::new(self.slice, free));
                 self.method = Method::Sweep;
             }
             None => {
@@ -1088,6 +1103,7 @@ impl<K: Kernel> Runner<'_, K> {
             touching,
             degenerate: self.degenerate,
             method: self.method,
+            free: self.free,
         }
     }
 }
