@@ -31,6 +31,8 @@ pub(crate) enum Verb {
     Forces(Forces),
     /// Draw the mechanism at its events, and its angles over time
     Render(Render),
+    /// The free component that holds the start: its boundary, exactly, and questions to it
+    Slice(crate::slice::SliceArgs),
     /// The face of bare arcs that holds the start
     Face(snapfit::face::Args),
     /// Flex a structure of loosely joined bodies as far as it goes (PuzzleFlex)
@@ -127,6 +129,11 @@ pub(crate) struct Render {
     /// Draw as SVG, to PATH or to standard output
     #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "-")]
     pub(crate) svg: Option<PathBuf>,
+    /// Draw a slice of configuration space instead: the free component and the way through it
+    #[arg(long)]
+    pub(crate) slice: bool,
+    #[command(flatten)]
+    pub(crate) which: crate::slice::Which,
     /// Of a structure: so many pictures of its way, PATH with a number before its ending
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: Option<u32>,

@@ -10,6 +10,7 @@ mod flex_apps;
 mod flex_render;
 mod output;
 mod progress;
+mod slice;
 mod trade;
 mod verdict;
 
@@ -66,6 +67,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Forces(args) => verdict::run_forces(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
+        Verb::Slice(args) => slice::run_slice(args),
         Verb::Face(args) => {
             let report = snapfit::face::run_cli(args)?;
             let text = serde_json::to_string(&report).map_err(|e| e.to_string())?;
@@ -140,6 +142,9 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         return flex_render::run_render(args, &name, &bytes, to);
     }
     let file = parse(&args.common, &name, &bytes)?;
+    if args.slice {
+        return slice::run_render(args, &file, to);
+    }
     let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
     output::write(to, &picture::svg(file.scene(), &document))?;
     Ok(status(&trajectory))
@@ -204,9 +209,7 @@ fn simulated(
         }
     };
     let options = Options {
-        deadline: engine
-            .time_limit
-            .and_then(|limit| Instant::now().checked_add(limit)),
+        deadline: deadline(engine),
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
         method: method(engine),
@@ -214,6 +217,12 @@ fn simulated(
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
     Ok((trajectory, document))
+}
+
+/// When to give up.
+fn deadline(engine: &Engine) -> Option<Instant> {
+    let limit = engine.time_limit?;
+    Instant::now().checked_add(limit)
 }
 
 /// A plan that the engine found impossible, placed in the file.
