@@ -17,7 +17,7 @@
 mod approx;
 mod compare;
 mod hash;
-mod index;
+pub(crate) mod index;
 mod island;
 mod isolate;
 mod item;
