@@ -131,7 +131,7 @@ impl Hull {
 }
 
 /// The packed tree.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Tree {
     /// Entries in packed order, then the nodes level by level, the root last.
     hulls: Vec<Hull>,

@@ -18,7 +18,7 @@ mod approx;
 mod boundary;
 mod compare;
 mod hash;
-mod index;
+pub(crate) mod index;
 mod island;
 mod isolate;
 mod item;
