@@ -309,6 +309,62 @@ fn the_first_stage_settles_generic_scenes() {
     assert!(share >= 0.999, "{share}");
 }
 
+#[test]
+fn what_is_not_modelled_costs_nothing() {
+    for (name, scene) in figures().into_iter().chain(scenes_of("examples")) {
+        let asked = |s: &Scene| run(s, Arithmetic::Filtered).ledger.counts;
+        // Forces are not the simulation's: a stiffness changes no question.
+        let mut plain = scene.clone();
+        plain.pawls.iter_mut().for_each(|p| p.stiffness = None);
+        let mut stiff = scene.clone();
+        let two = Some(Rat::from(2));
+        stiff
+            .pawls
+            .iter_mut()
+            .for_each(|p| p.stiffness = two.clone());
+        assert_eq!(asked(&plain), asked(&stiff), "{name}");
+        // No friction asks nothing that μ = 0 would not, and both less than friction.
+        let with = |mu: Option<Rat>| {
+            let mut s = plain.clone();
+            s.friction = mu;
+            asked(&s).asked()
+        };
+        assert_eq!(with(None), with(Some(Rat::zero())), "{name}");
+        let mut rubbed = plain.clone();
+        rubbed.friction = Some(Rat::frac(1, 1_000));
+        plain.friction = None;
+        let (a, b) = (
+            run(&plain, Arithmetic::Filtered),
+            run(&rubbed, Arithmetic::Filtered),
+        );
+        if a.outcome.kind == b.outcome.kind && a.outcome.time == b.outcome.time {
+            assert!(a.ledger.counts.asked() <= b.ledger.counts.asked(), "{name}");
+        }
+        // A root is rational polygons against polygons: the pawls' questions stay the same.
+        if plain.root.is_some() && plain.motions.iter().all(|m| !until_root(m)) {
+            let mut bare = plain.clone();
+            bare.root = None;
+            let (a, b) = (
+                run(&bare, Arithmetic::Filtered),
+                run(&plain, Arithmetic::Filtered),
+            );
+            if a.outcome.kind == b.outcome.kind {
+                assert!(a.ledger.counts.asked() <= b.ledger.counts.asked(), "{name}");
+            }
+        }
+    }
+}
+
+fn until_root(m: &Motion) -> bool {
+    matches!(
+        m,
+        Motion::Translate {
+            until_root_collision: true,
+            ..
+        }
+    )
+}
+
 /// The same answers whichever library carries long integers.
 #[cfg(feature = "rug")]
 #[test]

@@ -11,7 +11,7 @@ use super::local::{
 use super::sight::{All, Sight};
 use super::sweep::Sweep;
 use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
-use crate::contact::{Chart, Contact};
+use crate::contact::{Chart, Contact, ContactKind};
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
 use crate::kernel::{Filtered, Instant, Kernel, Position};
 use crate::number::{Rat, Scalar};
@@ -572,7 +572,7 @@ impl<K: Kernel> Runner<'_, K> {
         };
         let place = Place::new(z, half_turn);
         let inc = incident(self.slice, &*self.sight, &place);
-        self.degenerate += u64::from(inc.len() > 2);
+        self.degenerate += u64::from(is_degenerate(self.slice, &inc));
         let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &at);
         let next = resolve(self.slice, &place, &inc, self.state, at_rest, &free);
         self.enter(
@@ -1110,6 +1110,35 @@ impl<K: Kernel> Runner<'_, K> {
 
 /// A rational point of the cylinder in the kernel's numbers: chart, position, time.
 type Spot<K> = (Chart, <K as Kernel>::Num, <K as Kernel>::Num);
+
+/// Whether more arcs meet than in general position, or an edge lies flush on an edge (DP §8.4.2,
+/// Fig. 15: the constraints of two neighbouring vertices hold at once).
+fn is_degenerate<K: Kernel>(slice: &Slice<K>, inc: &[Incident]) -> bool {
+    let flush =
+        |a: &Incident, b: &Incident| match (slice.arc(a.arc).contact, slice.arc(b.arc).contact) {
+            (
+                Contact::Obstacle {
+                    obstacle: o,
+                    kind: k,
+                    ring: r,
+                    obstacle_feature: f,
+                    pawl_feature: p,
+                },
+                Contact::Obstacle {
+                    obstacle,
+                    kind,
+                    ring,
+                    obstacle_feature,
+                    pawl_feature,
+                },
+            ) if (o, k, r) == (obstacle, kind, ring) => match k {
+                ContactKind::B => f == obstacle_feature && p != pawl_feature,
+                ContactKind::A => p == pawl_feature && f != obstacle_feature,
+            },
+            _ => false,
+        };
+    inc.len() > 2 || inc.iter().any(|a| inc.iter().any(|b| flush(a, b)))
+}
 
 /// How an instant was reached.
 struct Entry<'a> {
