@@ -330,6 +330,17 @@ impl Scaffold {
         costs
     }
 
+    /// The terms of the objective at a configuration: body, its point as turned there, weight of
+    /// the point's displacement, weight of the angle.
+    pub(crate) fn weighted(&self, poses: &[Pose]) -> Vec<(usize, Vec2, Vec2, Rat)> {
+        let each = self.terms.iter().map(|t| {
+            let turned = t.point.rotate_tan_half(&poses[t.body].tan_half);
+            let weight = Vec2::new(t.dx.clone(), t.dy.clone());
+            (t.body, turned, weight, t.dtheta.clone())
+        });
+        each.collect()
+    }
+
     /// Whether anything is asked.
     pub(crate) fn has_objective(&self) -> bool {
         !self.terms.is_empty()
