@@ -18,6 +18,7 @@
 //! Configurations are rational throughout. What doubles do is to propose: a direction, a length.
 //! Whether a configuration respects its constraints is decided by exact integers.
 
+mod bound;
 mod branch;
 pub mod generate;
 mod model;
@@ -34,6 +35,7 @@ mod step;
 mod types;
 mod write;
 
+pub use bound::{OuterBound, outer_bound};
 pub use motion::{Contact as FirstContact, ProofSize};
 pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
