@@ -18,6 +18,7 @@
 //! Configurations are rational throughout. What doubles do is to propose: a direction, a length.
 //! Whether a configuration respects its constraints is decided by exact integers.
 
+pub mod apps;
 mod branch;
 pub mod generate;
 mod model;
@@ -34,8 +35,8 @@ mod step;
 mod types;
 mod write;
 
-pub use mps::to_mps;
 pub use motion::{Contact as FirstContact, ProofSize};
+pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
 pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
 pub use schema::structure_schema;

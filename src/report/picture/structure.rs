@@ -237,11 +237,19 @@ fn cone(structure: &Structure, poses: &[Pose], view: &View) -> Vec<Point> {
 
 /// A part of the plane that is worth enlarging: where robots are drawn small.
 fn window(picture: &StructurePicture<'_>, scale: f64) -> Option<[f64; 4]> {
-    let view = picture.structure.views.get(picture.structure.views.len() / 2)?;
+    let view = picture
+        .structure
+        .views
+        .get(picture.structure.views.len() / 2)?;
     let place = |k: usize| double(&picture.after[k].place);
     let (a, b) = (place(view.body), place(view.of));
     let half = 3.2 * (b[0] - a[0]).hypot(b[1] - a[1]);
-    (half * scale < 150.0).then_some([a[0] - half, a[1] - half / 2.0, a[0] + half, a[1] + half / 2.0])
+    (half * scale < 150.0).then_some([
+        a[0] - half,
+        a[1] - half / 2.0,
+        a[0] + half,
+        a[1] + half / 2.0,
+    ])
 }
 
 fn enlarged(
