@@ -51,10 +51,7 @@ fn every_design_is_decided() {
         assert_eq!(f.pawls.len(), s.pawls.len());
         let took = begin.elapsed();
         if took > Duration::from_secs(4) || d.undecided() {
-            eprintln!(
-                "seed {seed}: {took:?} {:?} {:?}",
-                d.class, d.undecided_width
-            );
+            eprintln!("seed {seed}: {took:?} {:?} {:?}", d.class, d.undecided_width);
         }
         open += usize::from(d.undecided());
         longest = longest.max(took);

@@ -6,8 +6,8 @@
 //! the only one that computes in doubles, since an eye cannot tell.
 
 pub mod json;
-mod layout;
 pub mod ledger;
+mod layout;
 mod num;
 pub mod picture;
 pub mod summary;
