@@ -31,8 +31,9 @@ pub struct Constraint {
     /// Which point, which line.
     pub pair: Pair,
     /// The squared length of the normal by which the row is multiplied.
-    scale2: Rat,
-    d0: Rat,
+    pub normal_square: Rat,
+    /// d₀, in the same scale.
+    pub d0: Rat,
     /// Non-zero coefficients: body, coordinate, value; in the scale of [`Constraint::distance`]
     /// times the normal's length.
     pub gradient: Vec<(usize, &'static str, Rat)>,
@@ -43,7 +44,7 @@ pub struct Constraint {
 impl Constraint {
     /// The signed distance squared, with the distance's sign.
     pub fn signed_square(&self) -> Rat {
-        let square = &self.d0.square() / &self.scale2;
+        let square = &self.d0.square() / &self.normal_square;
         if self.d0.sign() < 0 { -square } else { square }
     }
 }
@@ -92,7 +93,7 @@ fn constraint(row: &Row, run: &Run<'_>) -> Constraint {
     };
     Constraint {
         pair: row.pair,
-        scale2: rat(nx * nx + ny * ny),
+        normal_square: rat(nx * nx + ny * ny),
         d0,
         gradient,
         bound,
