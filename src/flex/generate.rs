@@ -323,7 +323,7 @@ fn chain(n: usize) -> Structure {
 /// Bricks twice as wide as high, each course shifted by half a brick: two tabs on top of each,
 /// two sockets below.
 fn wall(n: usize) -> Structure {
-    let (w, _) = sides(n, false);
+    let w = (1..).find(|w| w * w >= n).unwrap_or(n);
     let brick = |top: bool, bottom: bool| {
         let mut v: Vec<Cent> = vec![(999, -FACE), (999, FACE)];
         let tab = |x: i64| TAB.map(quarter).map(|(a, b)| (a + x, b));
@@ -437,7 +437,7 @@ fn flock(n: usize) -> Structure {
             (row, column) = (row + 1, 0);
         }
     }
-    let mut s = structure(format!("flock{n}"), bodies, Some(Vec::new()), objective);
+    let mut s = structure(format!("flock{n}"), bodies, None, objective);
     s.nearest = Some(5);
     s.views = views;
     s.step.rotation_limit = Some(Rat::frac(1, 10));

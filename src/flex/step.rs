@@ -450,7 +450,11 @@ impl<'a> Run<'a> {
     ) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
         let at = |scale: f64| self.moved(poses, direction, scale, grain);
-        let good = |poses: &[Pose]| !self.exceeds(pairs, &self.scaffold.place(poses), allowed);
+        let good = |poses: &[Pose]| {
+            let placed = self.scaffold.place(poses);
+            !self.exceeds(pairs, &placed, allowed)
+                && !super::pairs::too_deep(&self.scaffold, &placed, double(allowed))
+        };
         let whole = at(1.0);
         if good(&whole) {
             return (Rat::one(), whole);
