@@ -67,7 +67,7 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
         return Err("an inset has holes".to_owned());
     };
     let exact = |p: &[f64; 2]| Vec2::new(Rat::from_f64(p[0]), Rat::from_f64(p[1]));
-    let mut found: Vec<Vec2> = outer.iter().map(exact).collect();
+    let mut found: Vec<Vec2> = thinned(outer, ring.len()).iter().map(exact).collect();
     if found.len() != ring.len() {
         return Err(format!(
             "the inset has {} vertices where the body has {}: it swallows an edge",
@@ -92,6 +92,30 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
     found.rotate_left(turn.unwrap_or(0));
     check(&original, &found, by, forward)?;
     Ok(found)
+}
+
+/// The ring without those vertices that lie, but for the grid, on the line of their neighbours:
+/// the library leaves some behind at reflex corners.
+fn thinned(ring: &[[f64; 2]], wanted: usize) -> Vec<[f64; 2]> {
+    let mut ring = ring.to_vec();
+    while ring.len() > wanted.max(3) {
+        let n = ring.len();
+        let off = |k: usize| {
+            let (a, b, c) = (ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]);
+            let (dx, dy) = (c[0] - a[0], c[1] - a[1]);
+            (dx * (b[1] - a[1]) - dy * (b[0] - a[0])).abs() / dx.hypot(dy)
+        };
+        let least = (0..n)
+            .map(|k| (off(k), k))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        match least {
+            Some((off, k)) if off * f64::from(1u32 << 22) <= 1.0 => {
+                ring.remove(k);
+            }
+            _ => break,
+        }
+    }
+    ring
 }
 
 /// Checks an inset exactly, see the head of the module.

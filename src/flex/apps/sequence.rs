@@ -2,7 +2,8 @@
 //!
 //! A body's near constraints leave it a cone of directions in the plane. Candidates are the rays
 //! that the three signs of x + y give and the cone's furthest points towards eight sides, all from
-//! exact programs; a candidate counts only if the body's translation along it is clear of every
+//! exact programs; then the directions of edges of the body and of those beside it, since near
+//! constraints ask too much where corners touch (PF §V-A). A candidate counts only if the body's translation along it is clear of every
 //! body that is left, for all time ([`super::escape`]). The search is greedy, and loses nothing by
 //! it: a body that can leave now can still leave after others have.
 
@@ -15,6 +16,7 @@ use crate::geometry::{Polygon, Vec2};
 use crate::lp::{self, Model, Options, Range, Status};
 use crate::number::Rat;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The order in which bodies leave.
 #[derive(Clone, Debug, Default)]
@@ -104,7 +106,26 @@ fn way_out(body: usize, guards: &[Guard], polygons: &[Polygon], inside: &[bool])
                 .all(|k| escapes(&polygons[body], &polygons[k], d))
     };
     let sides = (0..8).filter_map(|k| furthest(&cone, k));
-    rays.chain(sides).find(clear)
+    let beside = guards
+        .iter()
+        .filter(|g| g.of == body || g.by == body)
+        .map(|g| if g.of == body { g.by } else { g.of })
+        .filter(|&k| inside[k]);
+    let shapes: BTreeSet<usize> = beside.chain([body]).collect();
+    let slides = shapes.into_iter().flat_map(|k| {
+        let ring = &polygons[k].rings()[0];
+        (0..ring.len()).flat_map(move |i| {
+            let edge = &ring[(i + 1) % ring.len()] - &ring[i];
+            [-&edge, edge]
+        })
+    });
+    let mut tried = BTreeSet::new();
+    let mut first_time = move |d: &Vec2| {
+        let size = d.x.abs().max(d.y.abs());
+        !size.is_zero() && tried.insert((&d.x / &size, &d.y / &size))
+    };
+    let all = rays.chain(sides).chain(slides);
+    all.filter(|d| first_time(d)).find(clear)
 }
 
 /// The cone's furthest point towards a side, within the unit square.
