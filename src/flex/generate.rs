@@ -424,12 +424,10 @@ fn flock(n: usize) -> Structure {
                 marker: vec(Rat::zero(), -&half),
             });
         }
-        if !x.is_zero() {
-            objective.push(Term::Body {
+        if k > 0 {
+            objective.push(Term::Towards {
                 body: k,
-                dx: Rat::from(-i64::from(x.sign())),
-                dy: Rat::zero(),
-                dtheta: Rat::zero(),
+                x: Rat::zero(),
             });
         }
         column += 1;
