@@ -39,6 +39,12 @@ pub(crate) enum Verb {
     Flex(crate::flex::FlexArgs),
     /// Write a structure of one of the paper's families
     Generate(crate::flex::GenerateArgs),
+    /// Find where a beam would hold a structure most
+    Brace(crate::flex_apps::BraceArgs),
+    /// Loosen a structure's joints, or find how loose they may be
+    Loosen(crate::flex_apps::LoosenArgs),
+    /// Decide whether a structure comes apart, and in which order
+    Separate(crate::flex_apps::SeparateArgs),
     /// Solve a linear program exactly: status, objective and certificate
     Lp(snapfit::lp::cli::LpArgs),
     /// Check a linear program's certificate with code of its own

@@ -76,6 +76,9 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         }
         Verb::Flex(args) => flex::run_flex(args),
         Verb::Generate(args) => flex::run_generate(args),
+        Verb::Brace(args) => flex_apps::run_brace(args),
+        Verb::Loosen(args) => flex_apps::run_loosen(args),
+        Verb::Separate(args) => flex_apps::run_separate(args),
         Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Trade(args) => trade::run(args),
