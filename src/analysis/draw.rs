@@ -19,7 +19,7 @@ fn shade(verdict: &str) -> &'static str {
     }
 }
 
-/// The point at which a phase's travel is drawn.
+/// Page coordinates of travel and force.
 struct Axis {
     x: [f64; 2],
     y: [f64; 2],
@@ -84,10 +84,10 @@ pub fn force_plot(doc: &ForcesDocument) -> String {
     let axis = Axis {
         x: [lo, hi.max(lo + 1e-9)],
         y: heights(phases),
-        rect: [78.0, 60.0, width - 110.0, height - 150.0],
+        rect: [78.0, 60.0, width - 110.0, height - 155.0],
     };
     grid(&mut page, &axis);
-    let mut y = height - 62.0;
+    let mut y = height - 36.0;
     page.clip(axis.rect);
     for (k, (p, (from, way))) in phases.iter().zip(&places).enumerate() {
         let colour = COLOURS[k % COLOURS.len()];
@@ -137,7 +137,7 @@ pub fn force_plot(doc: &ForcesDocument) -> String {
     page.text(width - 32.0, 52.0, 11.0, MUTED, "end", false, legend);
     page.text(
         axis.rect[0] + axis.rect[2] / 2.0,
-        height - 78.0,
+        axis.rect[1] + axis.rect[3] + 33.0,
         12.0,
         INK,
         "middle",
@@ -169,7 +169,12 @@ fn heights(phases: &[DrawnPhase]) -> [f64; 2] {
     }
     steady.sort_by(f64::total_cmp);
     let most = steady.get(steady.len() * 9 / 10).copied().unwrap_or(0.0);
-    let cut = (4.0 * most).max(hi).max(-lo);
+    let held = phases.iter().any(|p| p.unbounded.is_some());
+    let cut = if held {
+        (4.0 * most).max(hi).max(-lo)
+    } else {
+        f64::MAX
+    };
     for p in phases {
         for q in p.rubbed.iter().flatten().chain(p.smooth.iter().flatten()) {
             if q[1].is_finite() {

@@ -416,7 +416,8 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
         return Some([stored.lo(), stored.hi()]);
     }
     let largest = energy(&ends[0]).hi().max(energy(&ends[1]).hi());
-    let tolerance = &largest * &Rat::from(2).pow(goal + 3).recip();
+    let fineness = Rat::from(2).pow(goal + 3).recip();
+    let tolerance = &largest * &fineness;
     let forward = ends[0].lo() <= ends[1].lo();
     let (l, r) = if forward {
         (ends[0].hi(), ends[1].lo())
@@ -432,7 +433,7 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
     }
     let whole = &r - &l;
     let mut cells = vec![(l, r)];
-    let mut budget = 200;
+    let mut budget = 3000;
     while let Some((l, r)) = cells.pop() {
         if l >= r {
             continue;
@@ -458,8 +459,10 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
             Some(value.add(&rest))
         };
         let got = taylor(8).filter(|v| {
+            // Its share of the error by length, or by what it contributes.
             let share = &tolerance * &(&(&r - &l) / &whole);
-            v.hi() - v.lo() <= share
+            let own = v.abs().lo() * &fineness;
+            v.hi() - v.lo() <= share.max(own)
         });
         match got {
             Some(v) => sum = sum.add(&v),
