@@ -2,20 +2,23 @@
 
 use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
-use super::escape::Ground;
-use super::total::{Total, total};
+use super::escape::{Ground, lasting};
+use super::peak::Peak;
+use super::total::{Arc, Flip, Sample, Total, total};
 use crate::contact::{Contact, ContactKind};
 use crate::geometry::Vec2;
 use crate::motion::{OutcomeKind, PlanError, Trajectory};
 use crate::number::Rat;
 use crate::report::Num;
 use crate::report::json::ContactDocument;
-use crate::scene::Scene;
+use crate::report::words;
+use crate::scene::{Motion, Scene};
 use crate::slice::Time;
+use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde::Serialize;
 
 /// The result of `classify`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ClassifyDocument {
     /// `snapfit.classify/1`.
     pub schema: &'static str,
@@ -35,6 +38,9 @@ pub struct ClassifyDocument {
     pub critical_friction: Option<Num>,
     /// The infimum of the μ at which the plan itself sticks.
     pub critical_friction_forward: Option<Num>,
+    /// The force limit at which the family lets go: below it a force holds every direction that
+    /// nothing else blocks. Null where all are blocked anyway or no pawl has a stiffness.
+    pub critical_force: Option<Bound>,
     /// What the verdict rests on.
     pub assumed: Vec<&'static str>,
     /// What was left out of the model, because it was not needed or not given.
@@ -43,6 +49,10 @@ pub struct ClassifyDocument {
     pub directions: Vec<DirectionDocument>,
     /// Arcs that cover the circle, each proven at least as firmly blocked as it says.
     pub cover: Vec<ArcDocument>,
+    /// Where the exact verdicts of single directions flip.
+    pub flips: Vec<FlipDocument>,
+    /// The single directions of the circle that were decided, counter-clockwise.
+    pub samples: Vec<SampleDocument>,
     /// A direction that gets out, where the circle was asked and one was found.
     pub escape: Option<[Num; 2]>,
     /// Radians of directions not proven at least as firmly blocked as the class.
@@ -50,7 +60,7 @@ pub struct ClassifyDocument {
 }
 
 /// One direction of the family.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct DirectionDocument {
     /// The root's velocity.
     pub velocity: [Num; 2],
@@ -69,7 +79,7 @@ pub struct DirectionDocument {
 }
 
 /// How a motion ended.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct StopDocument {
     /// As in a result of `simulate`.
     pub kind: &'static str,
@@ -84,7 +94,7 @@ pub struct StopDocument {
 }
 
 /// An arc of directions, counter-clockwise between two unit vectors.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ArcDocument {
     /// Begin, exactly.
     pub from: [String; 2],
@@ -92,6 +102,52 @@ pub struct ArcDocument {
     pub to: [String; 2],
     /// What is proven; `undecided` where nothing is.
     pub verdict: &'static str,
+    /// What the proof rests on, and how the motion in the arc's middle ends.
+    pub reason: String,
+}
+
+/// A change of the verdict round the circle.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FlipDocument {
+    /// Before it.
+    pub from: [String; 2],
+    /// After it, at most 2⁻⁶⁰ of tan(φ/2) away.
+    pub to: [String; 2],
+    /// The verdict before it.
+    pub before: &'static str,
+    /// The verdict after it.
+    pub after: &'static str,
+    /// The direction in between that is written with the fewest digits: the critical one, most
+    /// likely; null where none is short.
+    pub critical: Option<[String; 2]>,
+    /// Its own verdict.
+    pub at: Option<&'static str>,
+}
+
+/// One direction of the circle.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct SampleDocument {
+    /// A unit vector.
+    pub direction: [String; 2],
+    /// Its exact verdict.
+    pub verdict: &'static str,
+}
+
+/// The JSON Schema of `classify`'s result.
+pub fn classify_schema() -> Schema {
+    schema_of::<ClassifyDocument>("snapfit.classify/1")
+}
+
+/// The JSON Schema of `forces`' result.
+pub fn forces_schema() -> Schema {
+    schema_of::<super::forces::ForcesDocument>("snapfit.forces/1")
+}
+
+fn schema_of<T: JsonSchema>(id: &str) -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    let mut schema = settings.into_generator().into_root_schema_for::<T>();
+    schema.insert("$id".to_owned(), id.into());
+    schema
 }
 
 fn pair(v: &Vec2) -> [Num; 2] {
@@ -148,6 +204,10 @@ fn stop(scene: &Scene, run: &Trajectory) -> StopDocument {
 }
 
 impl ClassifyDocument {
+    /// Whether a direction gets out, or would but for the force limit.
+    pub fn gets_out(&self) -> bool {
+        self.escape.is_some() || self.directions.iter().any(|d| d.plan.is_some())
+    }
     /// Whether a limit kept the question open: of the family, or of part of the circle.
     pub fn undecided(&self) -> bool {
         let open = self.class.is_none()
@@ -164,13 +224,49 @@ impl ClassifyDocument {
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn classify(scene: &Scene, ask: &Ask) -> Result<ClassifyDocument, PlanError> {
+    Ok(classify_with_way(scene, ask)?.0)
+}
+
+/// As [`classify`], with the motion that decides: a velocity and a duration from the end of the
+/// plan. It is the escape of the circle if there is one, else the family's weakest direction.
+///
+/// # Errors
+/// [`PlanError`] where the plan asks for what cannot be.
+pub fn classify_with_way(
+    scene: &Scene,
+    ask: &Ask,
+) -> Result<(ClassifyDocument, Option<(Vec2, Rat)>), PlanError> {
     let family = relative(scene, ask)?;
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
         let ground = Ground::new(scene, ask.deadline);
         total(&ground, start, family.class)
     });
-    Ok(written(scene, &family, circle.as_ref()))
+    let weakest = family.directions.iter().min_by_key(|d| d.verdict);
+    let relative_way = weakest.map(|d| (d.velocity.clone(), run_time(d)));
+    let way = match circle.as_ref() {
+        Some(t) if family.class != Some(Verdict::None) => {
+            let way = t.escape.as_ref().map(|w| {
+                let lasts = lasting(w, &t.distance.square()).0;
+                (w.clone(), lasts)
+            });
+            way.or(relative_way)
+        }
+        _ => relative_way,
+    };
+    Ok((written(scene, &family, circle.as_ref()), way))
+}
+
+/// A rational duration in which a direction's motion has run its course.
+fn run_time(d: &Direction) -> Rat {
+    let end = &d.run.outcome.time;
+    match end.as_rat() {
+        // A little longer, where it ends for another reason than its length.
+        Some(t) if d.run.outcome.kind == OutcomeKind::Completed => t.clone(),
+        Some(t) => t + &Rat::one(),
+        None if d.run.outcome.kind == OutcomeKind::Completed => Rat::from_f64(end.interval().hi),
+        None => Rat::from_f64(end.interval().hi) + Rat::frac(1, 1024),
+    }
 }
 
 fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> ClassifyDocument {
@@ -183,8 +279,19 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
     };
     let undecided = circle.map(|t| t.undecided_width);
     let reason = reason(scene, family, circle);
-    let rubbed = family.directions.iter().any(|d| d.with_friction);
-    let pushed = family.directions.iter().any(|d| d.peak.is_some());
+    let covered = |least: &[Verdict]| {
+        let arcs = circle.iter().flat_map(|t| &t.cover);
+        arcs.filter_map(|a| a.verdict).any(|v| least.contains(&v))
+    };
+    let rubs = scene.friction.as_ref().is_some_and(|m| m.sign() > 0);
+    let rubbed = family.directions.iter().any(|d| d.with_friction)
+        || rubs && covered(&[Verdict::Friction, Verdict::Force]);
+    let limited = scene
+        .classify
+        .as_ref()
+        .is_some_and(|c| c.force_limit.is_some());
+    let pushed = limited
+        && (family.directions.iter().any(|d| d.peak.is_some()) || covered(&[Verdict::Force]));
     let mut assumed = vec![
         "rigid planar bodies, straight quasistatic translation of the root",
         "each pawl is pulled towards rest; pawls meet neither each other nor the root",
@@ -233,35 +340,93 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
             t.cover
                 .iter()
                 .map(|a| {
-                    let text = |v: &Vec2| [v.x.to_string(), v.y.to_string()];
                     let [from, to] = a.ends();
                     ArcDocument {
                         from: text(&from),
                         to: text(&to),
                         verdict: a.verdict.map_or("undecided", Verdict::name),
+                        reason: arc_reason(scene, a),
                     }
                 })
                 .collect()
+        }),
+        critical_force: critical_force(family),
+        flips: circle.map_or_else(Vec::new, |t| t.flips.iter().map(flip).collect()),
+        samples: circle.map_or_else(Vec::new, |t| {
+            let of = |s: &Sample| SampleDocument {
+                direction: text(&Arc::unit(s.quarter, &s.s)),
+                verdict: s.verdict.name(),
+            };
+            t.samples.iter().map(of).collect()
         }),
         escape: circle.and_then(|t| t.escape.as_ref()).map(pair),
         undecided_width: undecided,
     }
 }
 
+fn text(v: &Vec2) -> [String; 2] {
+    [v.x.to_string(), v.y.to_string()]
+}
+
+fn flip(f: &Flip) -> FlipDocument {
+    let [from, to] = f
+        .sides
+        .each_ref()
+        .map(|s| text(&Arc::unit(s.quarter, &s.s)));
+    FlipDocument {
+        from,
+        to,
+        before: f.sides[0].verdict.name(),
+        after: f.sides[1].verdict.name(),
+        critical: f.critical.as_ref().map(|c| text(&c.0)),
+        at: f.critical.as_ref().map(|c| c.1.name()),
+    }
+}
+
+/// The least peak of the directions that nothing else blocks: at a larger limit that one gets out.
+fn critical_force(family: &Relative) -> Option<Bound> {
+    let free = family
+        .directions
+        .iter()
+        .filter(|d| d.verdict <= Verdict::Force && !d.open);
+    let peaks: Option<Vec<&Peak>> = free.map(|d| Some(&d.peak.as_ref()?.0.peak)).collect();
+    let least = peaks?.into_iter().reduce(|a, b| match (a, b) {
+        (Peak::Unbounded, b) => b,
+        (a, Peak::Unbounded) => a,
+        (Peak::Within(_, x), Peak::Within(_, y)) if x <= y => a,
+        _ => b,
+    })?;
+    Some(Bound::of(least, 12))
+}
+
+fn arc_reason(scene: &Scene, a: &Arc) -> String {
+    let proof = match a.verdict {
+        None => "nothing is proven",
+        Some(Verdict::None) => "nothing is claimed",
+        Some(Verdict::Force) => "held by friction, or by more than the force limit",
+        Some(Verdict::Friction) => "held by friction where the shapes alone do not",
+        Some(Verdict::Kinematic) => "the shapes alone hold",
+    };
+    match &a.middle {
+        Some((kind, by)) => {
+            let by = by.map_or("the root", |i| scene.pawls[i].name.as_str());
+            match kind {
+                OutcomeKind::Completed => format!("{proof}; its middle runs its length"),
+                _ => format!("{proof}; its middle ends {}, by {by}", kind.name()),
+            }
+        }
+        None => proof.to_owned(),
+    }
+}
+
 fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
     let out = d.run.outcome.kind == OutcomeKind::Completed;
     let plan = out.then(|| {
-        let lasted = d.run.outcome.time.interval().hi;
-        let lasted = d
-            .run
-            .outcome
-            .time
-            .as_rat()
-            .cloned()
-            .unwrap_or_else(|| Rat::from_f64(lasted));
         format!(
-            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{lasted}\"\n",
-            d.velocity.x, d.velocity.y
+            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{}\"\n",
+            d.velocity.x,
+            d.velocity.y,
+            run_time(d)
         )
     });
     DirectionDocument {
@@ -278,7 +443,19 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
 fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
     let end = &family.forward.outcome;
     if family.start.is_none() {
-        return format!("the plan does not complete: {}", end.kind.name());
+        let by = end
+            .pawl
+            .map_or(String::new(), |i| format!(", by {}", scene.pawls[i].name));
+        let mut text = format!(
+            "the plan does not complete: it ends {} in phase {}{by}",
+            end.kind.name(),
+            end.phase
+        );
+        if scene.motions.get(end.phase) == Some(&Motion::Reverse) {
+            text +=
+                "; that phase is a way back: without it in the plan, its end is what is classified";
+        }
+        return text;
     }
     let Some(weakest) = family.directions.iter().min_by_key(|d| d.verdict) else {
         return "no direction to decide".to_owned();
@@ -294,15 +471,24 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
         Verdict::None => format!("along {way} it gets out"),
         Verdict::Force => format!("along {way} it gets out only past the force limit"),
         _ => {
-            let by = weakest
-                .run
-                .outcome
-                .pawl
-                .map(|i| scene.pawls[i].name.as_str());
-            let end = weakest.run.outcome.kind.name();
-            format!("along {way} it ends {end}, by {}", by.unwrap_or("the root"))
+            let met = stop(scene, &weakest.run);
+            let by = met.pawl.as_deref().unwrap_or("the root");
+            let touching: Vec<String> = met.contacts.iter().map(words::contact).collect();
+            let on = if touching.is_empty() {
+                String::new()
+            } else {
+                format!(" ({})", touching.join(", "))
+            };
+            format!(
+                "along {way} it ends {} at t = {}, by {by}{on}",
+                met.kind,
+                words::short(&met.time)
+            )
         }
     };
+    if scene.motions.last() == Some(&Motion::Reverse) {
+        text += "; the plan comes back by itself, and this is asked of its end";
+    }
     if let Some(t) = circle {
         match (&t.escape, t.class) {
             (Some(w), _) => text += &format!("; along ({}, {}) it gets out", w.x, w.y),

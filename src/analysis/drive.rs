@@ -143,6 +143,30 @@ impl Window<'_> {
         ])
     }
 
+    /// Upper bounds of the five quantities over a cell where some balance may be singular; None
+    /// for one that may grow past every bound.
+    fn tops(&self, cell: [&Fix; 2], b: Bits) -> Option<[Option<Rat>; QUANTITIES]> {
+        let mut sum = [(); 4].map(|()| Some(Rat::zero()));
+        for s in &self.slides {
+            let x = match &self.slides[..] {
+                [_] => cell[0].join(cell[1]),
+                _ => s.part.place(cell[0], b)?.join(&s.part.place(cell[1], b)?),
+            };
+            let tops = match s.part.load(&x, s.rig, 1, b) {
+                Some(l) => {
+                    let (w, m) = (l.resistance.order(0), l.torque.order(0));
+                    [w.hi(), -w.lo(), m.hi(), -m.lo()].map(Some)
+                }
+                None => s.part.tops(&x, s.rig, b)?,
+            };
+            for (total, top) in sum.iter_mut().zip(tops) {
+                *total = total.as_ref().zip(top).map(|(a, t)| a + &t);
+            }
+        }
+        let [w, help, m, back] = sum;
+        Some([w, help, None, m, back])
+    }
+
     /// The time of a place of the variable.
     fn time(&self, x: &Fix, b: Bits) -> Option<[Rat; 2]> {
         let t = match &self.slides[..] {
@@ -252,15 +276,14 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
             let step = (other - end) * Rat::from(2).pow(20).recip();
             fine.rat(&(end + &step))
         });
-        for x in near {
-            if let Some(five) = w.five([&x, &x], fine) {
-                let bound = w.slides.iter().filter_map(|s| s.bound.clone()).max();
-                let large = bound.unwrap_or_default() + Rat::one();
-                for (k, v) in five.iter().enumerate() {
-                    if v.0.lo() > large || k == 2 {
-                        best[k].unbounded = true;
-                    }
-                }
+        for (x, end) in near.iter().zip([&l, &r]) {
+            let Some(tops) = w.tops([x, &fine.rat(end)], fine) else {
+                return unsettled(w, best);
+            };
+            let five = w.five([x, x], fine);
+            for (k, _) in tops.iter().enumerate().filter(|(_, t)| t.is_none()) {
+                let grows = five.as_ref().is_none_or(|f| f[k].0.lo().sign() > 0);
+                best[k].unbounded |= grows;
             }
         }
         skipped = [0, 1, 2, 3, 4].map(|k| best[k].unbounded);
@@ -273,7 +296,21 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
         let b = if depth < 12 { coarse } else { fine };
         let cell = [b.rat(&l), b.rat(&r)];
         let five = w.five([&cell[0], &cell[1]], b);
-        let tops: Option<Vec<Rat>> = five.as_ref().map(|f| f.iter().map(|v| v.0.hi()).collect());
+        let tops: Option<[Option<Rat>; QUANTITIES]> = match &five {
+            Some(f) => Some(f.each_ref().map(|v| Some(v.0.hi()))),
+            None => w.tops([&cell[0], &cell[1]], b),
+        };
+        if five.is_none()
+            && let Some(tops) = &tops
+        {
+            for (k, top) in tops.iter().enumerate() {
+                let Some(top) = top else { continue };
+                if *top <= best[k].lo || close(&best[k].lo, top, goal + 2) {
+                    best[k].hi = best[k].hi.clone().max(top.clone());
+                    done[k] = true;
+                }
+            }
+        }
         if let Some(five) = &five {
             let mut ends: Option<[Option<Five>; 2]> = None;
             for (k, v) in five.iter().enumerate() {
@@ -310,7 +347,10 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
             match tops {
                 Some(tops) => {
                     for k in (0..QUANTITIES).filter(|k| !done[*k]) {
-                        best[k].hi = best[k].hi.clone().max(tops[k].clone());
+                        match &tops[k] {
+                            Some(top) => best[k].hi = best[k].hi.clone().max(top.clone()),
+                            None => best[k].unbounded = true,
+                        }
                     }
                 }
                 None => unsettled(w, best),
@@ -376,7 +416,8 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
         return Some([stored.lo(), stored.hi()]);
     }
     let largest = energy(&ends[0]).hi().max(energy(&ends[1]).hi());
-    let tolerance = &largest * &Rat::from(2).pow(goal + 3).recip();
+    let fineness = Rat::from(2).pow(goal + 3).recip();
+    let tolerance = &largest * &fineness;
     let forward = ends[0].lo() <= ends[1].lo();
     let (l, r) = if forward {
         (ends[0].hi(), ends[1].lo())
@@ -392,7 +433,7 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
     }
     let whole = &r - &l;
     let mut cells = vec![(l, r)];
-    let mut budget = 200;
+    let mut budget = 3000;
     while let Some((l, r)) = cells.pop() {
         if l >= r {
             continue;
@@ -418,8 +459,10 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
             Some(value.add(&rest))
         };
         let got = taylor(8).filter(|v| {
+            // Its share of the error by length, or by what it contributes.
             let share = &tolerance * &(&(&r - &l) / &whole);
-            v.hi() - v.lo() <= share
+            let own = v.abs().lo() * &fineness;
+            v.hi() - v.lo() <= share.max(own)
         });
         match got {
             Some(v) => sum = sum.add(&v),

@@ -61,6 +61,21 @@ pub(super) struct Load {
     pub(super) work: Jet,
 }
 
+/// Numerators and the denominator of the balance.
+struct Terms {
+    /// kθ.
+    spring: Jet,
+    /// |r·N⊥| + μ·sgn(d)·r·N, positive where the contact slides.
+    den: Jet,
+    /// The way of the force, N − μσN⊥.
+    way: [Jet; 2],
+    /// (hinge − reference) × way.
+    moment: Jet,
+    /// |way|.
+    size: Fix,
+    clock: Jet,
+}
+
 impl<'a> Part<'a> {
     /// Cuts a stretch where its sliding turns round; only friction minds that.
     pub(super) fn cut(s: &'a Stretch, rubs: bool) -> Vec<Part<'a>> {
@@ -111,8 +126,8 @@ impl<'a> Part<'a> {
         Some(x.clamp(&a.join(&z)))
     }
 
-    /// The loads over an enclosed variable, to n orders; None where the balance may be singular.
-    pub(super) fn load(&self, x: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Load> {
+    /// The balance over an enclosed variable, to n orders, not yet divided.
+    fn terms(&self, x: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Terms> {
         let s = self.stretch;
         let constant = |f: Fix| Jet::constant(f, n, b);
         let rat = |r: &Rat| constant(b.rat(r));
@@ -143,14 +158,14 @@ impl<'a> Part<'a> {
             at(p).div(&at(q))?.neg()
         };
         let Some(touch) = &s.touch else {
-            // On an angular stop the pawl is held by the root itself.
-            return Some(Load {
-                force: [zero(), zero()],
-                size: zero(),
-                torque: zero(),
-                resistance: zero(),
+            // On an angular stop the pawl is held by the root itself: nothing comes from outside.
+            return Some(Terms {
+                spring: zero(),
+                den: constant(b.int(1)),
+                way: [zero(), zero()],
+                moment: zero(),
+                size: b.int(0),
                 clock,
-                work: zero(),
             });
         };
         let one = rat(&Rat::one());
@@ -192,28 +207,58 @@ impl<'a> Part<'a> {
         let side = b.int(i64::from(s.side));
         let rub = &rig.mu * &Rat::from(i64::from(self.drag));
         let den = lever.scale(&side).add(&height.scale(&b.rat(&rub)));
-        // On the cone's near side the denominator is positive: what rounding puts below is not.
-        let scale = torque.scale(&side).div(&den)?;
         let slip = b.rat(&(&rub * &Rat::from(i64::from(s.side))));
-        let force = [0, 1].map(|i| scale.mul(&push[i].sub(&across[i].scale(&slip))));
+        let way = [0, 1].map(|i| push[i].sub(&across[i].scale(&slip)));
+        let [hx, hy] = pair(&rig.arm);
         let size = length2 * (Rat::one() + rig.mu.square());
-        let size = scale.scale(&b.rat(&size).sqrt()?);
-        let [vx, vy] = pair(&s.velocity);
+        Some(Terms {
+            moment: way[1].scale(&hx).sub(&way[0].scale(&hy)),
+            size: b.rat(&size).sqrt()?,
+            spring: torque,
+            den,
+            way,
+            clock,
+        })
+    }
+
+    /// The loads over an enclosed variable, to n orders; None where the balance may be singular.
+    pub(super) fn load(&self, x: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Load> {
+        let s = self.stretch;
+        let t = self.terms(x, rig, n, b)?;
+        let scale = t.spring.scale(&b.int(i64::from(s.side))).div(&t.den)?;
+        let force = t.way.each_ref().map(|w| scale.mul(w));
+        let [vx, vy] = [b.rat(&s.velocity.x), b.rat(&s.velocity.y)];
         let power = force[0].scale(&vx).add(&force[1].scale(&vy)).neg();
         let speed = b.rat(&s.velocity.norm2()).sqrt()?;
         let resistance = power.scale(&b.int(1).div(&speed)?);
-        let [hx, hy] = pair(&rig.arm);
-        let moment = force[1].scale(&hx).sub(&force[0].scale(&hy));
-        let rate = clock.derivative();
+        let rate = t.clock.derivative();
         let work = power.clone().cut(rate.len()).mul(&rate);
         Some(Load {
             force,
-            size,
-            torque: moment.add(&torque),
+            size: scale.scale(&t.size),
+            torque: scale.mul(&t.moment).add(&t.spring),
             resistance,
-            clock,
+            clock: t.clock,
             work,
         })
+    }
+
+    /// Where the balance may be singular, upper bounds of the resistance, its opposite, and the
+    /// torque either way; None where the load may grow that way. The factor in front is never
+    /// negative, so the way of the force decides.
+    pub(super) fn tops(&self, x: &Fix, rig: &Rig, b: Bits) -> Option<[Option<Rat>; 4]> {
+        let t = self.terms(x, rig, 1, b)?;
+        let v = &self.stretch.velocity;
+        let [wx, wy] = t.way.each_ref().map(|w| w.order(0));
+        let along = wx.mul(&b.rat(&v.x)).add(&wy.mul(&b.rat(&v.y)));
+        let (moment, spring) = (t.moment.order(0), t.spring.order(0));
+        let top = |grows: Rat, base: Rat| (grows.sign() <= 0).then_some(base);
+        Some([
+            top(-along.lo(), Rat::zero()),
+            top(along.hi(), Rat::zero()),
+            top(moment.hi(), spring.hi()),
+            top(-moment.lo(), -spring.lo()),
+        ])
     }
 
     /// θ over an enclosed variable.

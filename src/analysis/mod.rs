@@ -12,6 +12,7 @@ mod cells;
 pub mod classify;
 pub mod critical;
 pub mod document;
+pub mod draw;
 mod drive;
 pub mod escape;
 pub mod fix;
@@ -22,8 +23,9 @@ mod load;
 pub mod peak;
 mod qpoly;
 pub mod stretch;
+pub mod summary;
 pub mod total;
 
 pub use classify::{Ask, Verdict};
-pub use document::{ClassifyDocument, classify};
+pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};
 pub use forces::{ForcesDocument, Wish, forces};

@@ -185,10 +185,9 @@ fn magnified(
                 0.0
             };
         }
-        for j in 0..p.n {
-            let here = reduced[j] * weight;
-            program.lower[p.m + j] = here;
-            program.upper[p.m + j] = here;
+        for (j, d) in reduced[..p.n].iter().enumerate() {
+            program.lower[p.m + j] = d * weight;
+            program.upper[p.m + j] = d * weight;
         }
         return Some(program);
     }
