@@ -242,6 +242,7 @@ fn simulate_with<K: Kernel>(
                 phases,
                 outcome,
                 pawls,
+                touching,
                 ledger,
             });
         }
@@ -277,6 +278,7 @@ fn simulate_with<K: Kernel>(
         phases,
         outcome,
         pawls,
+        touching,
         ledger,
     })
 }
