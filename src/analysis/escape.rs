@@ -159,6 +159,8 @@ impl<'a> Ground<'a> {
                     phase: 0,
                     probe: collision.as_ref().map(|c| &c.0),
                     stop: &stop,
+                    method: crate::motion::Method::Naive,
+                    known: None,
                 };
                 run(&slice, &set, &start.angles[i], &start.touching[i])
             })

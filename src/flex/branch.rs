@@ -9,7 +9,8 @@
 
 use super::model::{Row, Scaffold};
 use super::pairs::Selection;
-use super::shape::{Placed, Pose, double};
+use super::safe::linear;
+use super::shape::{Placed, Pose};
 use super::step::{Corners, Run};
 use crate::certificate::lp::{Claim, verify};
 use crate::lp::{self, Model, Outcome, Status};
@@ -44,9 +45,7 @@ pub(crate) fn solve(
     let facing = &selection.facing;
     let scaffold = &run.scaffold;
     if run.options.corners == Corners::Average || facing.is_empty() {
-        let model = scaffold.program(rows, poses);
-        let outcome = lp::solve(&model, &run.lp_options(rows));
-        run.remember(rows, &outcome);
+        let (model, outcome) = run.program(rows, poses);
         return conclude(run, &model, &outcome, facing.len(), 1, None);
     }
     let choices: Vec<[Row; 4]> = facing
@@ -59,13 +58,7 @@ pub(crate) fn solve(
         rows.iter().cloned().chain(more).collect()
     };
     let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses);
-    let solved = |taken: &[Option<u8>]| {
-        let rows = all(taken);
-        let model = scaffold.program(&rows, poses);
-        let outcome = lp::solve(&model, &run.lp_options(&rows));
-        run.remember(&rows, &outcome);
-        (model, outcome)
-    };
+    let solved = |taken: &[Option<u8>]| run.program(&all(taken), poses);
     let mut programs = 1;
     let root = vec![None; facing.len()];
     let (model, outcome) = solved(&root);
@@ -90,7 +83,7 @@ pub(crate) fn solve(
             break;
         }
         let direction = directions(scaffold, &outcome);
-        let kept = |row: &Row| activity(scaffold, row, &direction);
+        let kept = |row: &Row| linear(row, &direction);
         // The disjunction that the optimum breaks most.
         let broken = (0..facing.len())
             .filter(|&k| taken[k].is_none())
@@ -189,21 +182,6 @@ fn expand(
         }
     }
     4
-}
-
-/// J q̇ + d₀ of a row in units of distance, as doubles.
-fn activity(scaffold: &Scaffold, row: &Row, direction: &[[f64; 3]]) -> f64 {
-    let (one, two) = (row.pair.line_body as usize, row.pair.point_body as usize);
-    let [nx, ny] = &row.normal;
-    let length = Rat::from(nx * nx + ny * ny).interval().sqrt().hi;
-    let part = |v: &crate::number::Int| double(&Rat::from(v.clone())) / length;
-    let (a, b) = (direction[one], direction[two]);
-    let _ = scaffold;
-    part(nx) * (b[0] - a[0])
-        + part(ny) * (b[1] - a[1])
-        + part(&row.theta1) * a[2]
-        + part(&row.theta2) * b[2]
-        + part(&row.d0)
 }
 
 /// The values of an outcome by body.

@@ -457,6 +457,49 @@ fn separate(scaffold: &Scaffold, placed: &[Placed], a: usize, b: usize, out: &mu
     }
 }
 
+/// Whether, where pairs are found by closeness, a long step has brought bodies together that had
+/// no constraint between them: a convex vertex lies deeper inside another body than allowed. In
+/// doubles: it only shortens a step whose result is judged exactly anyway.
+pub(crate) fn too_deep(scaffold: &Scaffold, placed: &[Placed], allowed: f64) -> bool {
+    if scaffold.joints.is_some() {
+        return false;
+    }
+    let boxes: Vec<Box2> = placed.iter().map(box_of).collect();
+    meeting(&boxes, -allowed).into_iter().any(|(a, b)| {
+        let fixed = scaffold.forms[a] == Form::Fixed && scaffold.forms[b] == Form::Fixed;
+        !fixed
+            && (deepest(scaffold, placed, a, b) > allowed
+                || deepest(scaffold, placed, b, a) > allowed)
+    })
+}
+
+/// How deep the deepest convex vertex of b lies inside a; negative where none does.
+fn deepest(scaffold: &Scaffold, placed: &[Placed], a: usize, b: usize) -> f64 {
+    let ring = &placed[a].near;
+    let mut most = -1.0f64;
+    for (v, p) in placed[b].near.iter().enumerate() {
+        if scaffold.shapes[b].corners[v] != Corner::Convex {
+            continue;
+        }
+        let (mut inside, mut depth) = (false, f64::INFINITY);
+        for (k, from) in ring.iter().enumerate() {
+            let to = ring[(k + 1) % ring.len()];
+            let (ex, ey) = (to[0] - from[0], to[1] - from[1]);
+            let (px, py) = (p[0] - from[0], p[1] - from[1]);
+            let t = ((px * ex + py * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
+            depth = depth.min((px - t * ex).hypot(py - t * ey));
+            let spans = (from[1] > p[1]) != (to[1] > p[1]);
+            if spans && px < ex * py / ey {
+                inside = !inside;
+            }
+        }
+        if inside {
+            most = most.max(depth);
+        }
+    }
+    most
+}
+
 impl Placed {
     /// A normal of the shape's frame, turned, of length one.
     pub(crate) fn unit(&self, normal: &IntVec) -> [f64; 2] {

@@ -541,11 +541,27 @@ fn told_apart(x: &Interval, y: &Interval) -> Option<Ordering> {
     Some(order)
 }
 
+/// Counts an equality of roots as settled, and keeps it where it holds: by name where both have
+/// one polynomial (and so, their intervals being isolating, no arithmetic told them equal).
+fn settled_equality(a: &Arc<Root>, b: &Arc<Root>, same: bool) {
+    if same {
+        Root::unite(a, b);
+        if a.poly == b.poly {
+            return filter::settled(Stage::Name);
+        }
+    }
+    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
+}
+
 /// Two rationals that their enclosures do not tell apart.
 fn cmp_values(a: &Rat, b: &Rat) -> Ordering {
-    let order = a.cmp(b);
-    filter::settled_exactly(order.is_eq(), a.bits().max(b.bits()));
-    order
+    // Fractions in lowest terms are one number if and only if they are spelt alike.
+    if a == b {
+        filter::settled(Stage::Name);
+        return Ordering::Equal;
+    }
+    filter::settled_exactly(false, a.bits().max(b.bits()));
+    a.cmp(b)
 }
 
 /// Two roots that are known to differ.
@@ -612,13 +628,13 @@ impl PartialEq for Algebraic {
                 a.cmp_same(b).is_eq()
             }
             _ => match (self.root(), o.root()) {
-                (Ok(a), Ok(b)) if Arc::ptr_eq(a, b) => {
+                (Ok(a), Ok(b)) if Arc::ptr_eq(a.representative(), b.representative()) => {
                     filter::settled(Stage::Name);
                     true
                 }
                 (Ok(a), Ok(b)) => {
                     let same = a.enclosure().meets(&b.enclosure()) && a.equals(b);
-                    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
+                    settled_equality(a, b, same);
                     same
                 }
                 (Err(r), _) => o.cmp_rat(r).is_eq(),
@@ -662,7 +678,7 @@ impl Ord for Algebraic {
             (Err(r), _) => return o.cmp_rat(r).reverse(),
             (_, Err(r)) => return self.cmp_rat(r),
         };
-        if Arc::ptr_eq(a, b) {
+        if Arc::ptr_eq(a.representative(), b.representative()) {
             filter::settled(Stage::Name);
             return Ordering::Equal;
         }
@@ -671,7 +687,7 @@ impl Ord for Algebraic {
             return o;
         }
         if a.equals(b) {
-            filter::settled_exactly(true, a.poly.most_bits().max(b.poly.most_bits()));
+            settled_equality(a, b, true);
             Ordering::Equal
         } else {
             cmp_different(a, b)

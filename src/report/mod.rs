@@ -10,6 +10,7 @@ mod layout;
 pub mod ledger;
 mod num;
 pub mod picture;
+pub mod slice;
 pub mod summary;
 pub(crate) mod theta;
 pub(crate) mod words;

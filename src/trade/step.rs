@@ -241,10 +241,9 @@ impl State<'_> {
     }
 }
 
-/// Steps through the whole plan, `steps` of one length; None where the time is over, or the plan
-/// has an end that is not known beforehand.
+/// Steps through the whole plan, `steps` of one length; None where the time is over.
 pub fn simulate(scene: &Scene, steps: u32, deadline: Option<Instant>) -> Option<Observed> {
-    let plan = plan(scene)?;
+    let mut plan = plan(scene)?;
     let obstacles: Vec<Body> = scene
         .obstacles
         .iter()
@@ -285,11 +284,12 @@ pub fn simulate(scene: &Scene, steps: u32, deadline: Option<Instant>) -> Option<
         .friction
         .as_ref()
         .map(|m| m.nearest_f64().unwrap_or(f64::MAX));
-    let whole: f64 = plan.iter().map(|p| p.1).sum();
+    let whole: f64 = plan.iter().map(|p| p.duration).sum();
     let dt = whole / f64::from(steps.max(1));
     let (mut clock, mut offset) = (0.0, [0.0, 0.0]);
     let mut end = (OutcomeKind::Completed, None);
-    'plan: for (v, duration) in plan {
+    'plan: for index in 0..plan.len() {
+        let (v, mut duration) = (plan[index].v, plan[index].duration);
         let n = (duration / dt).ceil().max(1.0) as u64;
         for i in 1..=n {
             if deadline.is_some_and(|d| Instant::now() >= d) {
@@ -308,6 +308,13 @@ pub fn simulate(scene: &Scene, steps: u32, deadline: Option<Instant>) -> Option<
                 let there = ring.iter().map(|q| [q[0] + moved[0], q[1] + moved[1]]);
                 let body = Body::new(vec![there.collect()]);
                 if obstacles.iter().any(|o| o.overlaps(&body)) {
+                    if plan[index].until_root {
+                        duration = t;
+                        if let Some(next) = plan.get_mut(index + 1).filter(|p| p.back) {
+                            next.duration = t;
+                        }
+                        break;
+                    }
                     end = (OutcomeKind::RootCollision, None);
                     break 'plan;
                 }
@@ -323,20 +330,52 @@ pub fn simulate(scene: &Scene, steps: u32, deadline: Option<Instant>) -> Option<
     })
 }
 
-/// Velocities and durations; None where a phase lasts until the root collides.
-fn plan(scene: &Scene) -> Option<Vec<(P, f64)>> {
-    let mut out: Vec<(P, f64)> = Vec::new();
+/// A phase: velocity, longest duration, and whether it ends when the root collides.
+struct Phase {
+    v: P,
+    duration: f64,
+    until_root: bool,
+    /// Whether it goes back along the phase before.
+    back: bool,
+}
+
+fn plan(scene: &Scene) -> Option<Vec<Phase>> {
+    // Where no duration is given, as long as it takes to leave the scene's box.
+    let all = || {
+        let fixed = scene.obstacles.iter().flat_map(|o| &o.vertices);
+        let root = scene.root.iter().flat_map(|r| &r.vertices);
+        fixed.chain(root).map(point)
+    };
+    let span = |k: usize| {
+        let most = all().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max);
+        most - all().map(|p| p[k]).fold(f64::INFINITY, f64::min)
+    };
+    let size = span(0).hypot(span(1));
+    let mut out: Vec<Phase> = Vec::new();
     for m in &scene.motions {
         out.push(match m {
             Motion::Translate {
                 velocity,
-                duration: Some(d),
-                until_root_collision: false,
-            } => (point(velocity), d.nearest_f64()?),
-            Motion::Translate { .. } => return None,
+                duration,
+                until_root_collision,
+            } => {
+                let v = point(velocity);
+                let bound = duration.as_ref().and_then(Rat::nearest_f64);
+                Phase {
+                    v,
+                    duration: bound.unwrap_or(size / v[0].hypot(v[1])),
+                    until_root: *until_root_collision,
+                    back: false,
+                }
+            }
             Motion::Reverse => {
-                let (v, d) = out.last()?;
-                ([-v[0], -v[1]], *d)
+                let last = out.last()?;
+                Phase {
+                    v: [-last.v[0], -last.v[1]],
+                    duration: last.duration,
+                    until_root: false,
+                    back: true,
+                }
             }
         });
     }

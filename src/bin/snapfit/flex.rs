@@ -28,9 +28,18 @@ pub(crate) struct FlexArgs {
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
+    /// Write every linear program into a directory, as step0.mps and so on
+    #[arg(long, value_name = "DIR")]
+    programs: Option<PathBuf>,
+    /// Bound the flex from outside too: what no motion without collision can exceed
+    #[arg(long)]
+    bound: bool,
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
+    /// Only list the constraints where the structure stands, and what each alone allows
+    #[arg(long)]
+    constraints: bool,
 }
 
 /// Arguments of `snapfit generate`.
@@ -39,8 +48,12 @@ pub(crate) struct GenerateArgs {
     /// grid, jit, jrot, ring, chain, wall, can or flock
     family: String,
     /// Number of bodies
-    #[arg(long)]
-    bodies: usize,
+    #[arg(long, required_unless_present = "drawing")]
+    bodies: Option<usize>,
+    /// Instead of a family, the name of a structure whose blocks this file shows: # a block, @ a
+    /// fixed one, . nothing
+    #[arg(long, value_name = "FILE", conflicts_with = "bodies")]
+    drawing: Option<PathBuf>,
     /// What random shifts and turns come from
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -50,13 +63,23 @@ pub(crate) struct GenerateArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Accuracy {
+pub(crate) enum Accuracy {
     /// Nothing is proven
     Float,
     /// A rational enclosure of every optimum
     Bounds,
     /// Every optimum itself
     Exact,
+}
+
+impl Accuracy {
+    pub(crate) fn level(self) -> lp::Accuracy {
+        match self {
+            Accuracy::Float => lp::Accuracy::Float,
+            Accuracy::Bounds => lp::Accuracy::Bounds,
+            Accuracy::Exact => lp::Accuracy::Exact,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,7 +98,7 @@ enum PathArg {
     Safe,
 }
 
-fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
+pub(crate) fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
     let overrides = crate::overrides(common)?;
     let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
     if !common.quiet {
@@ -89,6 +112,9 @@ fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Fai
 pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
     let (name, bytes) = crate::read_bytes(&args.common)?;
     let file = parse(&args.common, &name, &bytes)?;
+    if args.constraints {
+        return crate::flex_apps::run_constraints(&args.common, file.structure());
+    }
     if file.structure().objective.is_empty() {
         return Err(Failure::Scene(vec![
             file.error_at("structure", "missing-key")
@@ -117,7 +143,17 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         Accuracy::Bounds => (lp::Accuracy::Bounds, "bounds"),
         Accuracy::Exact => (lp::Accuracy::Exact, "exact"),
     };
+    let count = std::cell::Cell::new(0u32);
+    let write = |model: &lp::Model| {
+        if let Some(dir) = &args.programs {
+            let path = dir.join(format!("step{}.mps", count.replace(count.get() + 1)));
+            if let Err(e) = output::write(Some(&path), &flex::to_mps(model)) {
+                let _ = writeln!(std::io::stderr(), "snapfit: {e}");
+            }
+        }
+    };
     let options = FlexOptions {
+        programs: Some(&write),
         accuracy,
         method: lp::Method::Warm,
         corners: match args.corners {
@@ -129,8 +165,12 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         progress: Some(&tell),
     };
     let flexed = flex::flex(&structure, &options);
+    let bound = args
+        .bound
+        .then(|| flex::outer_bound(&structure, args.time_limit));
     drop(spinner);
-    let document = FlexDocument::new(&structure, &flexed, word);
+    let mut document = FlexDocument::new(&structure, &flexed, word);
+    document.bound = bound.map(|b| document.bounded(&b));
     let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
     output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
     Ok(if FlexDocument::decided(flexed.ending) {
@@ -141,7 +181,14 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
 }
 
 pub(crate) fn run_generate(args: &GenerateArgs) -> Result<u8, Failure> {
-    let structure = flex::generate::generate(&args.family, args.bodies, args.seed)?;
+    let structure = match (&args.drawing, args.bodies) {
+        (Some(path), _) => {
+            let text =
+                std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+            flex::apps::layout::layout(&args.family, &text)?
+        }
+        (None, bodies) => flex::generate::generate(&args.family, bodies.unwrap_or(0), args.seed)?,
+    };
     output::write(args.out.as_deref(), &flex::structure_to_toml(&structure))?;
     Ok(DECIDED)
 }

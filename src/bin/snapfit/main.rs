@@ -6,8 +6,11 @@
 
 mod args;
 mod flex;
+mod flex_apps;
+mod flex_render;
 mod output;
 mod progress;
+mod slice;
 mod trade;
 mod verdict;
 
@@ -64,6 +67,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Forces(args) => verdict::run_forces(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
+        Verb::Slice(args) => slice::run_slice(args),
         Verb::Face(args) => {
             let report = snapfit::face::run_cli(args)?;
             let text = serde_json::to_string(&report).map_err(|e| e.to_string())?;
@@ -72,6 +76,9 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         }
         Verb::Flex(args) => flex::run_flex(args),
         Verb::Generate(args) => flex::run_generate(args),
+        Verb::Brace(args) => flex_apps::run_brace(args),
+        Verb::Loosen(args) => flex_apps::run_loosen(args),
+        Verb::Separate(args) => flex_apps::run_separate(args),
         Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Trade(args) => trade::run(args),
@@ -133,7 +140,14 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
     };
     output::spare_input(&args.common.file, to)?;
-    let file = read(&args.common)?;
+    let (name, bytes) = read_bytes(&args.common)?;
+    if snapfit::flex::is_structure(&name, &bytes) {
+        return flex_render::run_render(args, &name, &bytes, to);
+    }
+    let file = parse(&args.common, &name, &bytes)?;
+    if args.slice {
+        return slice::run_render(args, &file, to);
+    }
     let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
     output::write(to, &picture::svg(file.scene(), &document))?;
     Ok(status(&trajectory))
@@ -198,15 +212,20 @@ fn simulated(
         }
     };
     let options = Options {
-        deadline: engine
-            .time_limit
-            .and_then(|limit| Instant::now().checked_add(limit)),
+        deadline: deadline(engine),
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
+        method: method(engine),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
     Ok((trajectory, document))
+}
+
+/// When to give up.
+fn deadline(engine: &Engine) -> Option<Instant> {
+    let limit = engine.time_limit?;
+    Instant::now().checked_add(limit)
 }
 
 /// A plan that the engine found impossible, placed in the file.
@@ -232,14 +251,19 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     if !snapfit::number::set_backend(backend) {
         return Err(unbuilt("backend", backend.name(), "num"));
     }
-    match engine.method {
-        Method::Naive => {}
-        Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
-    }
+    let arithmetic = arithmetic(engine);
     Ok(Provenance {
-        arithmetic: arithmetic(engine).name(),
-        method: "naive",
+        arithmetic: arithmetic.name(),
+        method: method(engine).under(&arithmetic).name(),
     })
+}
+
+/// The algorithm that the options ask for.
+fn method(engine: &Engine) -> motion::Method {
+    match engine.method {
+        Method::Sweep => motion::Method::Sweep,
+        Method::Naive => motion::Method::Naive,
+    }
 }
 
 /// The arithmetic that the options ask for.
