@@ -346,7 +346,10 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
         let x = b.rat(&mid);
         if let Some(centre) = w.five([&x, &x], b) {
             let half = b.rat(&(&r - &mid));
-            for k in (0..QUANTITIES).filter(|k| !done[*k]) {
+            for k in 0..QUANTITIES {
+                if done[k] {
+                    continue;
+                }
                 // Only what is attained: the top of an inner point bounds nothing else.
                 if centre[k].0.lo() > best[k].lo {
                     best[k].attain(&centre[k].0, || w.time(&x, b));
