@@ -22,6 +22,17 @@ use world::oracle::{World, radians};
 use world::rng::Rng;
 use world::scenes::{Recipe, random_scene};
 
+/// Names the design at hand where a test goes down with a panic.
+struct Named(u64);
+
+impl Drop for Named {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("seed {}", self.0);
+        }
+    }
+}
+
 /// A random scene that asks for everything.
 fn design(seed: u64) -> Scene {
     let mut recipe = Recipe::draw(seed);
@@ -47,6 +58,7 @@ fn every_design_is_decided() {
     let mut classes: BTreeMap<String, usize> = BTreeMap::new();
     let (mut open, mut longest) = (0, Duration::ZERO);
     for seed in (0..n).map(|k| 3_000_000 + world::first_seed() + k) {
+        let _named = Named(seed);
         let s = design(seed);
         let begin = Instant::now();
         let ask = Ask {
@@ -171,6 +183,7 @@ fn verdicts_agree_with_brute_force() {
     let mut wrong = Vec::new();
     for k in 0..n {
         let seed = 5_000_000 + world::first_seed() + k;
+        let _named = Named(seed);
         let mut s = if k % 4 == 0 { design(seed) } else { hook(seed) };
         s.classify = None;
         let r = relative(&s, &Ask::default()).unwrap();
@@ -220,6 +233,7 @@ fn verdicts_agree_with_brute_force() {
 fn verdicts_mind_no_more_than_they_must() {
     let (mut kinematic, mut friction) = (0, 0);
     for seed in (0..count(2_000) as u64).map(|k| 7_000_000 + world::first_seed() + k) {
+        let _named = Named(seed);
         let base = hook(seed);
         let class = |mu: i64, k: Option<i64>| {
             let mut s = base.clone();

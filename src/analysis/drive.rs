@@ -289,7 +289,7 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
         skipped = [0, 1, 2, 3, 4].map(|k| best[k].unbounded);
     }
     let coarse = Bits(fine.0.min(56));
-    let mut budget = 600;
+    let mut budget = 3000;
     let mut cells = vec![(l, r, 0u32, skipped)];
     while let Some((l, r, depth, mut done)) = cells.pop() {
         budget -= 1;
@@ -342,6 +342,31 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
         if done.iter().all(|d| *d) {
             continue;
         }
+        let mid = Rat::midpoint(&l, &r);
+        let x = b.rat(&mid);
+        if let Some(centre) = w.five([&x, &x], b) {
+            let half = b.rat(&(&r - &mid));
+            for k in 0..QUANTITIES {
+                if done[k] {
+                    continue;
+                }
+                // Only what is attained: the top of an inner point bounds nothing else.
+                if centre[k].0.lo() > best[k].lo {
+                    best[k].attain(&centre[k].0, || w.time(&x, b));
+                }
+                // The mean value form is the narrower one on small cells.
+                let slope = five.as_ref().and_then(|f| f[k].1.as_ref());
+                let Some(slope) = slope else { continue };
+                let top = centre[k].0.add(&slope.abs().mul(&half)).hi();
+                if top <= best[k].lo || close(&best[k].lo, &top, goal + 2) {
+                    best[k].hi = best[k].hi.clone().max(top);
+                    done[k] = true;
+                }
+            }
+        }
+        if done.iter().all(|d| *d) {
+            continue;
+        }
         let spent = budget <= 0 || u64::from(depth) + 8 > fine.0;
         if spent {
             match tops {
@@ -356,16 +381,6 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
                 None => unsettled(w, best),
             }
             continue;
-        }
-        let mid = Rat::midpoint(&l, &r);
-        let x = coarse.rat(&mid);
-        if let Some(five) = w.five([&x, &x], coarse) {
-            for (k, v) in five.iter().enumerate().filter(|(k, _)| !done[*k]) {
-                // Only what is attained: the top of an inner point bounds nothing else.
-                if v.0.lo() > best[k].lo {
-                    best[k].attain(&v.0, || w.time(&x, coarse));
-                }
-            }
         }
         cells.push((l, mid.clone(), depth + 1, done));
         cells.push((mid, r, depth + 1, done));

@@ -28,6 +28,8 @@ pub struct Start {
     pub offset: Vec2,
     /// One orientation a pawl, in file order.
     pub angles: Vec<Angle>,
+    /// Who touches each pawl then: what held it goes on holding it, where it can.
+    pub touching: Vec<Vec<Contact>>,
 }
 
 impl Start {
@@ -50,6 +52,7 @@ impl Start {
         Some(Start {
             offset: &last.offset + &last.velocity.scale(lasted),
             angles,
+            touching: plan.touching.clone(),
         })
     }
 }
@@ -159,7 +162,7 @@ impl<'a> Ground<'a> {
                     method: crate::motion::Method::Naive,
                     known: None,
                 };
-                run(&slice, &set, &start.angles[i], &[])
+                run(&slice, &set, &start.angles[i], &start.touching[i])
             })
             .collect();
         let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
@@ -201,6 +204,7 @@ impl<'a> Ground<'a> {
                 branches,
             },
             pawls,
+            touching: Vec::new(),
             ledger: Default::default(),
         }
     }

@@ -296,6 +296,7 @@ fn simulate_with<K: Kernel>(
                 phases,
                 outcome,
                 pawls,
+                touching,
                 ledger,
             });
         }
@@ -331,6 +332,7 @@ fn simulate_with<K: Kernel>(
         phases,
         outcome,
         pawls,
+        touching,
         ledger,
     })
 }

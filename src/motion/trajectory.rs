@@ -321,6 +321,9 @@ pub struct Trajectory<K: Kernel = Filtered> {
     pub outcome: Outcome<K>,
     /// One history a pawl, in file order.
     pub pawls: Vec<PawlTrace<K>>,
+    /// Who touches each pawl at the end of a plan that completed: a motion that goes on from
+    /// there begins with these held.
+    pub touching: Vec<Vec<Contact>>,
     /// What it took.
     pub ledger: super::ledger::Ledger,
 }
@@ -383,6 +386,7 @@ impl<K: Kernel> Trajectory<K> {
                 branches: self.outcome.branches,
             },
             pawls: self.pawls.into_iter().map(trace).collect(),
+            touching: self.touching,
             ledger: self.ledger,
         }
     }
