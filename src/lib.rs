@@ -19,6 +19,7 @@
 //! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
 //! * [`report`]: results as JSON with every number exact, summaries, pictures.
 //! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
+//! * [`trade`](mod@trade): speed against accuracy, measured over the arithmetics.
 //! * [`face`](mod@face): the single face of an arrangement of arcs.
 //! * [`lp`], [`certificate`]: exact linear programming, and the checker of its certificates, which
 //!   shares only the reader and the numbers with it.
@@ -62,3 +63,4 @@ pub mod number;
 pub mod report;
 pub mod scene;
 pub mod slice;
+pub mod trade;

@@ -6,7 +6,8 @@ mod common;
 
 use common::count;
 use snapfit::analysis::classify::{Ask, Relative, Verdict, direction, relative};
-use snapfit::analysis::escape::{Ground, Start};
+use snapfit::analysis::document::classify_with_way;
+use snapfit::analysis::escape::{Ground, Start, with_motion};
 use snapfit::analysis::total::{Arc, total};
 use snapfit::motion::{OutcomeKind, simulate};
 use snapfit::number::{Poly, Rat};
@@ -30,7 +31,13 @@ fn decided(scene: &Scene) -> Relative {
     relative(scene, &ASK).unwrap()
 }
 
-const FAMILIES: [(&str, Verdict); 8] = [
+const FAMILIES: [(&str, Verdict); 14] = [
+    ("examples/rabbit-clip.toml", Verdict::Force),
+    ("tests/data/rabbit-small.toml", Verdict::Force),
+    ("tests/data/rabbit-firm.toml", Verdict::Force),
+    ("tests/data/rabbit-narrow.toml", Verdict::Force),
+    ("tests/data/rabbit-large.toml", Verdict::Force),
+    ("examples/rabbit-clip-lock.toml", Verdict::Kinematic),
     ("examples/handbook-vertex.toml", Verdict::Friction),
     ("examples/handbook-edge.toml", Verdict::None),
     ("examples/bayer-hook.toml", Verdict::None),
@@ -175,7 +182,7 @@ fn the_cover_holds_for_single_directions() {
             assert_eq!(pair[0].ends()[1], pair[1].ends()[0], "{name}");
         }
         let mut seed = 0x9E37_79B9_7F4A_7C15u64;
-        for _ in 0..count(2500) {
+        for _ in 0..count(10_000) {
             seed ^= seed << 13;
             seed ^= seed >> 7;
             seed ^= seed << 17;
@@ -201,4 +208,91 @@ fn a_way_out_is_named() {
     let whole = total(&ground, &Start::after(&plan).unwrap(), None);
     assert_eq!(whole.class, Some(Verdict::None));
     assert!(whole.escape.is_some());
+}
+
+/// A ratchet's pawl sinks in exactly when tan β > μ: here tan β = 1/6. At 1/6 itself it slides,
+/// as the cone is open.
+#[test]
+fn a_pawl_sinks_in_when_the_angle_beats_friction() {
+    let mut s = scene("examples/ratchet-sinks.toml");
+    let eps = Rat::from(2).pow(80).recip();
+    let sixth = Rat::frac(1, 6);
+    for (mu, end) in [
+        (Rat::zero(), OutcomeKind::Jammed),
+        (&sixth - &eps, OutcomeKind::Jammed),
+        (sixth.clone(), OutcomeKind::Jammed),
+        (&sixth + &eps, OutcomeKind::Stuck),
+        (Rat::frac(1, 2), OutcomeKind::Stuck),
+    ] {
+        s.friction = Some(mu.clone());
+        let run = simulate(&s, &Default::default()).unwrap();
+        assert_eq!(run.outcome.kind, end, "{mu}");
+    }
+}
+
+/// Clips as their makers label them: the one that "works", the one whose larger snap is "firmer",
+/// and the one with the lock, "irreversible". (That a narrow one is "hard to take apart" is the
+/// bow's doing: a rigid foot cannot tell.)
+#[test]
+fn clips_are_what_their_makers_say() {
+    let force = |name: &str| {
+        let d = decided(&scene(name));
+        let (peak, _) = d.directions[0].peak.clone().unwrap();
+        match peak.peak {
+            snapfit::analysis::peak::Peak::Within(lo, _) => lo,
+            other => panic!("{name}: {other:?}"),
+        }
+    };
+    assert!(force("tests/data/rabbit-firm.toml") > force("tests/data/rabbit-small.toml"));
+    let lock = decided(&scene("examples/rabbit-clip-lock.toml"));
+    assert_eq!(lock.class, Some(Verdict::Kinematic));
+}
+
+/// The way out that a verdict names is a plan: simulated, it completes; and where the design
+/// locks, the motion that decides ends as the verdict says.
+#[test]
+fn the_deciding_motion_can_be_simulated() {
+    for (name, class) in FAMILIES {
+        let s = scene(name);
+        if s.motions
+            .iter()
+            .any(|m| *m == snapfit::scene::Motion::Reverse)
+        {
+            continue;
+        }
+        let (doc, way) = classify_with_way(&s, &ASK).unwrap();
+        let (v, lasts) = way.unwrap();
+        let run = simulate(&with_motion(&s, &v, &lasts), &Default::default()).unwrap();
+        let completes = run.outcome.kind == OutcomeKind::Completed;
+        assert_eq!(
+            completes,
+            class <= Verdict::Force,
+            "{name}: {:?}",
+            run.outcome.kind
+        );
+        assert_eq!(doc.class, Some(class.name()), "{name}");
+    }
+}
+
+/// Flips are isolated to 2⁻⁶⁰, and both sides are what they are said to be.
+#[test]
+fn flips_are_isolated() {
+    for name in ["tests/data/total-fig7d.toml", "tests/data/total-fig7e.toml"] {
+        let s = scene(name);
+        let ground = Ground::new(&s, None);
+        let plan = simulate(&s, &Default::default()).unwrap();
+        let start = Start::after(&plan).unwrap();
+        let whole = total(&ground, &start, None);
+        assert!(!whole.flips.is_empty(), "{name}");
+        for f in &whole.flips {
+            let [a, b] = &f.sides;
+            assert!(&b.s - &a.s <= Rat::from(2).pow(60).recip());
+            assert_ne!(a.verdict, b.verdict);
+            for side in [a, b] {
+                let w = Arc::unit(side.quarter, &side.s);
+                let d = direction(&ground, &start, &w, &whole.distance.square(), false);
+                assert_eq!(d.verdict, side.verdict, "{name}");
+            }
+        }
+    }
 }

@@ -111,7 +111,7 @@ fn bad_usage() {
         &[],
         &["fly", PINS],
         &["simulate"],
-        &["simulate", PINS, "--arithmetic", "f64"],
+        &["simulate", PINS, "--tolerance=-1"],
         &["simulate", PINS, "--arithmetic", "roman"],
         &["simulate", PINS, "--method", "sweep"],
         &["simulate", PINS, "--time-limit", "soon"],

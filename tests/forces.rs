@@ -2,9 +2,11 @@
 //! whose sliding direction is read off finite differences of the motion itself.
 #![allow(clippy::unwrap_used)]
 
+use snapfit::analysis::bound::Bound;
 use snapfit::analysis::escape::Ground;
 use snapfit::analysis::peak::{Instant, Peak, force, torque};
 use snapfit::analysis::stretch::{Stretch, stretches};
+use snapfit::analysis::{Ask, ForcesDocument, Wish, forces};
 use snapfit::contact::{Contact, ContactKind};
 use snapfit::motion::{Trajectory, simulate};
 use snapfit::number::Rat;
@@ -183,4 +185,223 @@ fn enclosures_nest() {
             assert!((&narrow.1 - &narrow.0) * Rat::from(2).pow(200) <= narrow.0);
         }
     }
+}
+
+fn ends(b: &Bound) -> Option<[Rat; 2]> {
+    match b {
+        Bound::Unbounded(_) => None,
+        Bound::Within { lo, hi } => Some([lo.parse().unwrap(), hi.parse().unwrap()]),
+    }
+}
+
+fn middle(b: &Bound) -> f64 {
+    let [lo, hi] = ends(b).unwrap();
+    0.5 * (value(&lo) + value(&hi))
+}
+
+fn asked(s: &Scene, digits: u32, samples: u32) -> ForcesDocument {
+    let wish = Wish {
+        digits,
+        samples,
+        draw: false,
+    };
+    forces(s, &wish, &Ask::default()).unwrap()
+}
+
+/// Without friction the drive's power goes into the springs, whatever the contact: −f·ṗ = Σ kθθ̇,
+/// by finite differences of the motion. And a torque about another point differs by a moment.
+#[test]
+fn the_roots_loads_balance() {
+    let mut checked = 0;
+    for name in SCENES {
+        let mut s = scene(name);
+        s.friction = None;
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(3));
+        });
+        let doc = asked(&s, 9, 40);
+        let shift = snapfit::geometry::Vec2::new(Rat::from(2), Rat::from(-5));
+        let moved = s.root.clone().map(|root| {
+            let mut other = s.clone();
+            let base = root.reference.clone().unwrap_or(s.pawls[0].hinge.clone());
+            other.root = Some(snapfit::scene::Root {
+                reference: Some(&base + &shift),
+                ..root
+            });
+            asked(&other, 9, 40)
+        });
+        let run = simulate(&s, &Default::default()).unwrap();
+        let ground = Ground::new(&s, None);
+        let all = stretches(&s, &ground.shapes, &ground.obstacles, &run);
+        let root = doc.root.as_ref().unwrap();
+        for (k, phase) in root.phases.iter().enumerate() {
+            let v = &run.phases[k].velocity;
+            let speed = value(&v.norm2()).sqrt();
+            for (i, at) in phase.history.iter().enumerate() {
+                let t = at.time.value.unwrap() - value(&run.phases[k].from);
+                let mut power = 0.0;
+                let h = 1e-6;
+                let mut near = false;
+                for st in all.iter().filter(|st| st.phase == k) {
+                    let (t0, t1) = (st.t[0].interval().lo, st.t[1].interval().hi);
+                    near |= (t - t0).abs() < 1e-4 || (t - t1).abs() < 1e-4;
+                    if t0 < t && t < t1 {
+                        let stiff = value(s.pawls[st.pawl].stiffness.as_ref().unwrap());
+                        let rate = (theta(&run, st, t + h) - theta(&run, st, t - h)) / (2.0 * h);
+                        power += stiff * theta(&run, st, t) * rate;
+                    }
+                }
+                if near {
+                    continue;
+                }
+                checked += usize::from(power != 0.0);
+                let got = middle(&at.resistance) * speed;
+                assert!(
+                    (got - power).abs() <= 1e-5 * (1.0 + power.abs()),
+                    "{name} {t}: {got} {power}"
+                );
+                if let Some(moved) = &moved {
+                    let there = &moved.root.as_ref().unwrap().phases[k].history[i];
+                    let [fx, fy] = at.force.each_ref().map(middle);
+                    // −shift × f.
+                    let moment = -(2.0 * fy + 5.0 * fx);
+                    let got = middle(&there.torque) - middle(&at.torque);
+                    assert!(
+                        (got - moment).abs() <= 1e-6 * (1.0 + moment.abs()),
+                        "{name} {t}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(checked > 20, "{checked}");
+}
+
+/// With friction: the work is the integral of the resistance, and no sample beats a peak.
+#[test]
+fn work_and_peaks_of_the_root_hold_against_sampling() {
+    let mut worked = 0;
+    for name in SCENES {
+        let mut s = scene(name);
+        s.friction = Some(Rat::frac(1, 4));
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(3));
+        });
+        let n = 1500;
+        let doc = asked(&s, 6, n);
+        for p in &doc.root.as_ref().unwrap().phases {
+            let length = p.to.value.unwrap() - p.from.value.unwrap();
+            let [vx, vy] = p.velocity.each_ref().map(|v| v.value.unwrap());
+            let step = length * vx.hypot(vy) / f64::from(n);
+            let mut sum = 0.0;
+            let (mut most, mut least, mut turn) = (0.0f64, 0.0f64, 0.0f64);
+            for at in &p.history {
+                let w = middle(&at.resistance);
+                sum += w * step;
+                most = most.max(w);
+                least = least.min(w);
+                turn = turn.max(middle(&at.torque).abs());
+            }
+            for (peak, seen) in [
+                (&p.peak.resistance, most),
+                (&p.peak.help, -least),
+                (&p.peak.torque, turn),
+            ] {
+                if let Some([lo, hi]) = ends(peak) {
+                    assert!(
+                        seen <= value(&hi) * (1.0 + 1e-6) + 1e-9,
+                        "{name}: {seen} {hi}"
+                    );
+                    assert!(value(&lo) <= seen * 1.03 + 1e-3, "{name}: {seen} {lo}");
+                    assert!((&hi - &lo) * Rat::from(10).pow(5) <= hi, "{name}: narrow");
+                }
+            }
+            if let Some(work) = &p.work {
+                worked += usize::from(sum != 0.0);
+                let got = middle(work);
+                assert!(
+                    (got - sum).abs() <= 0.01 * (most + -least) * step * f64::from(n),
+                    "{name}: {got} {sum}"
+                );
+            }
+        }
+    }
+    assert!(worked >= 5, "{worked}");
+}
+
+/// Bayer's Example I: the torque balance of a rigid arm, W = P·(sin α + μ cos α)/(cos(α ∓ θ) ∓
+/// μ sin(α ∓ θ))…, beside the handbook's factor.
+#[test]
+fn the_handbooks_example_parts_by_the_arms_turn() {
+    let doc = asked(&scene("examples/bayer-hook.toml"), 9, 0);
+    let (mu, k, l) = (0.6, 4876.0, 19.0);
+    let theta = (2.4f64 / 19.0).asin();
+    let p = k * theta / l;
+    let exact = |a: f64, sign: f64| {
+        let turned = a + sign * theta;
+        p * (a.sin() + mu * a.cos()) / (turned.cos() - mu * turned.sin())
+    };
+    let slopes = [15.0f64 / 26.0, 1.0].map(f64::atan);
+    let find = |phase: usize, tan: &str| {
+        let mut all = doc.pawls[0].segments.iter().filter(|s| s.phase == phase);
+        let s = all.find(|s| {
+            s.handbook
+                .as_ref()
+                .is_some_and(|h| h.slope.as_deref() == Some(tan))
+        });
+        s.unwrap().handbook.clone().unwrap()
+    };
+    let (there, back) = (find(0, "15/26"), find(1, "1"));
+    for (h, want, factor, tan) in [
+        (&there, exact(slopes[0], -1.0), "9/5", slopes[0].tan()),
+        (&back, exact(slopes[1], 1.0), "4", 1.0),
+    ] {
+        assert_eq!(h.factor.as_deref(), Some(factor));
+        let formula = p * (mu + tan) / (1.0 - mu * tan);
+        assert!((middle(h.formula.as_ref().unwrap()) / formula - 1.0).abs() < 1e-8);
+        assert!(
+            (middle(h.model.as_ref().unwrap()) / want - 1.0).abs() < 1e-8,
+            "{h:?} {want}"
+        );
+        assert!(!h.parts.is_empty());
+    }
+    // The table of the field: 1.477 in, 8.218 out, in units of P (its slope in is 30°).
+    assert!((middle(there.model.as_ref().unwrap()) / p - 1.477).abs() < 0.002);
+    assert!((middle(back.model.as_ref().unwrap()) / p - 8.218).abs() < 0.002);
+    // By the steep hook the formula still lets go, and the model does not.
+    let steep = asked(&scene("examples/bayer-hook-steep.toml"), 6, 0);
+    assert_eq!(steep.outcome, "stuck");
+    let held = steep.root.unwrap().phases.pop().unwrap();
+    assert_eq!(ends(&held.peak.resistance), None);
+    assert!(ends(&held.peak.help).is_some());
+}
+
+/// The digits asked for bound both the width and the length of what is printed.
+#[test]
+fn digits_are_the_users() {
+    let s = scene("tests/data/total-fig7e.toml");
+    let mut before: Option<[Rat; 2]> = None;
+    for digits in [2, 3, 6, 30, 100] {
+        let doc = asked(&s, digits, 2);
+        let force = &doc.peak.as_ref().unwrap().force;
+        let Bound::Within { lo, .. } = force else {
+            panic!("finite");
+        };
+        assert!(lo.len() <= 2 * digits as usize + 10, "{lo}");
+        let [lo, hi] = ends(force).unwrap();
+        assert!((&hi - &lo) * Rat::from(10).pow(digits) <= hi, "{digits}");
+        if let Some([a, b]) = before {
+            assert!(a <= hi && lo <= b, "enclosures of one number meet");
+        }
+        before = Some([lo, hi]);
+    }
+}
+
+#[test]
+fn without_a_stiffness_nothing_is_modelled_and_that_is_said() {
+    let mut s = scene("tests/data/total-fig7e.toml");
+    s.pawls.iter_mut().for_each(|p| p.stiffness = None);
+    let doc = asked(&s, 6, 3);
+    assert!(!doc.modelled && doc.peak.is_none() && doc.root.is_none());
+    assert!(doc.note.unwrap().contains("no pawl has a stiffness"));
 }

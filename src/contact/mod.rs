@@ -17,9 +17,10 @@ mod cone;
 mod patch;
 mod shape;
 mod trig;
+mod window;
 
 pub use cone::Cones;
-pub use patch::{Frame, Patch, patches};
+pub use patch::{Frame, Patch, patches, patches_within};
 pub use shape::{ObstacleShape, PawlShape, Ring};
 pub use trig::{Chart, Trig};
 

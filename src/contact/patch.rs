@@ -1,9 +1,10 @@
 //! Patches: for each pair of features that can touch, the C-function with the conditions under
 //! which it is a real contact.
 
-use super::{Contact, ContactKind, ObstacleShape, PawlShape, Trig};
+use super::{Contact, ContactKind, ObstacleShape, PawlShape, Ring, Trig, window};
+use crate::face::index::Hull;
 use crate::geometry::Vec2;
-use crate::number::{Interval, Rat, Scalar};
+use crate::number::{Enclosed, Interval, Rat, Scalar, filter};
 
 /// A straight phase as one hinge sees it: p(t) = p₀ + v·t, 0 ≤ t ≤ duration.
 #[derive(Clone, Debug)]
@@ -14,6 +15,16 @@ pub struct Frame<R = Rat> {
     pub v: Vec2<R>,
     /// How long the phase lasts.
     pub duration: R,
+}
+
+impl<R: Scalar> Frame<R> {
+    fn enclosed(&self) -> Frame<Enclosed> {
+        Frame {
+            p0: self.p0.enclosed(),
+            v: self.v.enclosed(),
+            duration: Enclosed::new(self.duration.interval()),
+        }
+    }
 }
 
 /// One contact pair over one phase (DP eqs. 3, 4, 22): the C-function f = f₀ + t·f₁ is positive
@@ -35,6 +46,8 @@ pub struct Patch<R = Rat> {
     /// The pawl edge (direction) and obstacle edge (normal) that are flush where each wedge
     /// condition ends, as ids: (pawl edge, obstacle ring's global edge id).
     pub flush: [(u32, u32); 2],
+    /// In which charts it may be met within the phase.
+    pub charts: [bool; 2],
 }
 
 /// R_θ a · n as a function of θ.
@@ -69,15 +82,119 @@ fn dist2(a: (Interval, Interval), b: (Interval, Interval)) -> Interval {
     gap(a.0, b.0) + gap(a.1, b.1)
 }
 
+/// What holds every point within `reach` of the path: a box, and a strip along the path.
+fn capsule(path: (Interval, Interval), v: (Interval, Interval), reach: f64) -> Hull {
+    let r = reach * (1.0 + 1e-12);
+    let wide = |i: Interval| (i.lo - r - i.lo.abs() * 1e-12, i.hi + r + i.hi.abs() * 1e-12);
+    let ((x0, x1), (y0, y1)) = (wide(path.0), wide(path.1));
+    let boxed = Hull::boxed([x0, x1, y0, y1]);
+    let middle = |i: Interval| i.lo * 0.5 + i.hi * 0.5;
+    // The path runs up or down along a diagonal of its box; any slope near that gives a strip.
+    let rising = middle(v.0) * middle(v.1) > 0.0;
+    let (dx, dy) = (path.0.hi - path.0.lo, path.1.hi - path.1.lo);
+    let slope = if rising { dy / dx } else { -dy / dx };
+    if !slope.is_finite() || v.0.sign().is_none() || v.1.sign().is_none() {
+        return boxed;
+    }
+    // Both ends of the diagonal, up to the width of the ends' enclosures.
+    let ends = if rising {
+        [(path.0.lo, path.1.lo), (path.0.hi, path.1.hi)]
+    } else {
+        [(path.0.lo, path.1.hi), (path.0.hi, path.1.lo)]
+    };
+    let at = ends.map(|(x, y)| y - slope * x);
+    let size = |x: f64, y: f64| y.abs() + (slope * x).abs();
+    let room =
+        r * (1.0 + slope * slope).sqrt() * (1.0 + 1e-9) + 1e-9 * (size(x0, y0) + size(x1, y1));
+    Hull {
+        slope,
+        low: at[0].min(at[1]) - room,
+        high: at[0].max(at[1]) + room,
+        ..boxed
+    }
+}
+
 /// The patches of a pawl against the obstacles over a phase, without those that lie out of the
 /// pawl's reach along the hinge's path (idea 4: what cannot be met is never made).
 ///
-/// Cost: one certified interval test a pair; exact work only for pairs within reach.
+/// Cost: O(log n) a ring of n edges (the first time O(n log n)), one certified interval test a pair of features near
+/// the path, exact work only for pairs within reach.
 pub fn patches<R: Scalar>(
     frame: &Frame<R>,
     pawl: &PawlShape<R>,
     obstacles: &[ObstacleShape<R>],
 ) -> Vec<Patch<R>> {
+    let mut out = Vec::new();
+    pairs(frame, pawl, obstacles, &mut |p| {
+        let oring = &obstacles[p.o].rings[p.r];
+        out.push(p.patch(frame, pawl, oring));
+    });
+    out
+}
+
+/// As [`patches`], but without those that certainly cannot be met within the phase, and with the
+/// charts in which the others may be; decided in intervals before an exact number is made.
+pub fn patches_within<R: Scalar>(
+    frame: &Frame<R>,
+    pawl: &PawlShape<R>,
+    obstacles: &[ObstacleShape<R>],
+) -> Vec<Patch<R>> {
+    if !R::EXACT || !filter::on() {
+        return patches(frame, pawl, obstacles);
+    }
+    let duration = frame.duration.interval().hi;
+    let near = frame.enclosed();
+    let body = PawlShape {
+        ring: pawl.ring.rough().clone(),
+    };
+    let mut out = Vec::new();
+    pairs(frame, pawl, obstacles, &mut |p| {
+        let rough = p.patch(&near, &body, obstacles[p.o].rings[p.r].rough());
+        let charts = window::charts(&rough, duration);
+        if charts != [false; 2] {
+            let patch = p.patch(frame, pawl, &obstacles[p.o].rings[p.r]);
+            out.push(Patch { charts, ..patch });
+        }
+    });
+    out
+}
+
+/// A pair of features within reach of each other.
+struct Pair {
+    kind: ContactKind,
+    o: usize,
+    r: usize,
+    /// Of the pawl.
+    i: usize,
+    /// Of the obstacle.
+    j: usize,
+    edge_base: u32,
+}
+
+impl Pair {
+    fn patch<R: Scalar>(&self, frame: &Frame<R>, pawl: &PawlShape<R>, oring: &Ring<R>) -> Patch<R> {
+        let Pair {
+            o,
+            r,
+            i,
+            j,
+            edge_base,
+            ..
+        } = *self;
+        match self.kind {
+            ContactKind::B => type_b(frame, pawl, oring, o, r, i, j, edge_base),
+            ContactKind::A => type_a(frame, pawl, oring, o, r, i, j, edge_base),
+        }
+    }
+}
+
+/// Visits the pairs of features within reach along the hinge's path.
+fn pairs<R: Scalar>(
+    frame: &Frame<R>,
+    pawl: &PawlShape<R>,
+    obstacles: &[ObstacleShape<R>],
+    visit: &mut dyn FnMut(&Pair),
+) {
     let ring = &pawl.ring;
     let m = ring.len();
     let p_end = &frame.p0 + &frame.v.scale(&frame.duration);
@@ -94,18 +211,26 @@ pub fn patches<R: Scalar>(
         })
         .collect();
     let reach2 = radius2.iter().map(|r| r.hi).fold(0.0, f64::max);
-    let mut out = Vec::new();
+    let velocity = (frame.v.x.interval(), frame.v.y.interval());
+    let near = capsule(path, velocity, reach2.sqrt());
     let mut edge_base = 0u32;
     for (o, obstacle) in obstacles.iter().enumerate() {
         for (r, oring) in obstacle.rings.iter().enumerate() {
-            for j in 0..oring.len() {
+            for j in oring.edges_near(&near) {
                 let (q, q_next) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
                 let edge_box = box_of(&[q, q_next]);
                 let d2 = dist2(edge_box, path);
                 if d2.lo <= reach2 {
                     for (i, r2) in radius2.iter().enumerate() {
                         if ring.convex[i] && d2.lo <= r2.hi && d2.hi >= r2.lo {
-                            out.push(type_b(frame, pawl, oring, o, r, i, j, edge_base));
+                            visit(&Pair {
+                                kind: ContactKind::B,
+                                o,
+                                r,
+                                i,
+                                j,
+                                edge_base,
+                            });
                         }
                     }
                 }
@@ -114,7 +239,14 @@ pub fn patches<R: Scalar>(
                     for i in 0..m {
                         let far = radius2[i].hi.max(radius2[ring.next(i)].hi);
                         if q2.lo <= far && q2.hi >= nearest2[i] {
-                            out.push(type_a(frame, pawl, oring, o, r, i, j, edge_base));
+                            visit(&Pair {
+                                kind: ContactKind::A,
+                                o,
+                                r,
+                                i,
+                                j,
+                                edge_base,
+                            });
                         }
                     }
                 }
@@ -122,7 +254,6 @@ pub fn patches<R: Scalar>(
             edge_base += oring.len() as u32;
         }
     }
-    out
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -174,6 +305,7 @@ fn type_b<R: Scalar>(
             (i as u32, edge_base + j as u32),
             (ring.prev(i) as u32, edge_base + j as u32),
         ],
+        charts: [true; 2],
     }
 }
 
@@ -228,5 +360,6 @@ fn type_a<R: Scalar>(
             (i as u32, edge_base + j as u32),
             (i as u32, edge_base + oring.prev(j) as u32),
         ],
+        charts: [true; 2],
     }
 }

@@ -1,8 +1,10 @@
 //! Polygons prepared for contact: edges with outward normals, vertices with their convexity.
 
+use crate::face::index::{Hull, Tree};
 use crate::geometry::Vec2;
-use crate::number::{Rat, Scalar};
+use crate::number::{Enclosed, Rat, Scalar};
 use crate::scene::{Obstacle, Pawl};
+use std::sync::OnceLock;
 
 /// A closed ring of vertices in listing order, with the side on which the solid lies.
 #[derive(Clone, Debug)]
@@ -13,6 +15,10 @@ pub struct Ring<R = Rat> {
     pub normals: Vec<Vec2<R>>,
     /// For each vertex whether it is strictly convex: only such a vertex can touch.
     pub convex: Vec<bool>,
+    /// The boxes of the edges, indexed when first asked for.
+    index: OnceLock<Tree>,
+    /// The ring in certified intervals, made when first asked for.
+    rough: OnceLock<Box<Ring<Enclosed>>>,
 }
 
 impl<R: Scalar> Ring<R> {
@@ -38,7 +44,40 @@ impl<R: Scalar> Ring<R> {
             vertices,
             normals,
             convex,
+            index: OnceLock::new(),
+            rough: OnceLock::new(),
         }
+    }
+    /// The ring in certified intervals, made once.
+    pub(super) fn rough(&self) -> &Ring<Enclosed> {
+        self.rough.get_or_init(|| {
+            Box::new(Ring {
+                vertices: self.vertices.iter().map(Vec2::enclosed).collect(),
+                normals: self.normals.iter().map(Vec2::enclosed).collect(),
+                convex: self.convex.clone(),
+                index: OnceLock::new(),
+                rough: OnceLock::new(),
+            })
+        })
+    }
+    /// The edges that may meet a region, in order: O(log n) and what is near it, after O(n log n) once.
+    pub(super) fn edges_near(&self, region: &Hull) -> Vec<usize> {
+        let tree = self.index.get_or_init(|| {
+            let edge = |i: usize| {
+                let (p, q) = (&self.vertices[i], &self.vertices[self.next(i)]);
+                let x = p.x.interval().hull(&q.x.interval());
+                let y = p.y.interval().hull(&q.y.interval());
+                Hull::boxed([x.lo, x.hi, y.lo, y.hi])
+            };
+            Tree::new((0..self.len()).map(|i| (edge(i), i as u32)).collect())
+        });
+        let mut near = Vec::new();
+        tree.query(region, |i| {
+            near.push(i as usize);
+            true
+        });
+        near.sort_unstable();
+        near
     }
     /// Number of vertices, and of edges.
     pub fn len(&self) -> usize {

@@ -57,7 +57,7 @@ pub fn generate(family: &str, bodies: usize, seed: u64) -> Result<Structure, Str
 }
 
 /// A vertex in hundredths.
-type Cent = (i64, i64);
+pub(super) type Cent = (i64, i64);
 
 fn cents((x, y): Cent) -> Vec2 {
     Vec2::new(Rat::frac(x, 100), Rat::frac(y, 100))
@@ -77,7 +77,7 @@ fn quarter((x, y): Cent) -> Cent {
 
 /// A block with tabs and sockets on those sides that are asked for, counter-clockwise from its
 /// lower right corner.
-fn block(right: bool, top: bool, left: bool, bottom: bool) -> Vec<Cent> {
+pub(super) fn block(right: bool, top: bool, left: bool, bottom: bool) -> Vec<Cent> {
     let mut v = vec![(FACE, -FACE)];
     let mut side = |wanted: bool, shape: [Cent; 4], turned: bool, corner: Option<Cent>| {
         if wanted {
@@ -278,7 +278,7 @@ fn upwards(body: usize) -> Term {
 }
 
 /// A structure with the block's ε and a tenth of its clearance as the violation allowed.
-fn structure(
+pub(super) fn structure(
     name: String,
     bodies: Vec<Body>,
     joints: Option<Vec<Joint>>,
@@ -300,7 +300,7 @@ fn structure(
     }
 }
 
-fn body(name: String, shape: &[Cent], at: (i64, i64), fixed: bool) -> Body {
+pub(super) fn body(name: String, shape: &[Cent], at: (i64, i64), fixed: bool) -> Body {
     Body {
         name,
         vertices: shape.iter().map(|&p| cents(p)).collect(),
@@ -424,12 +424,10 @@ fn flock(n: usize) -> Structure {
                 marker: vec(Rat::zero(), -&half),
             });
         }
-        if !x.is_zero() {
-            objective.push(Term::Body {
+        if k > 0 {
+            objective.push(Term::Towards {
                 body: k,
-                dx: Rat::from(-i64::from(x.sign())),
-                dy: Rat::zero(),
-                dtheta: Rat::zero(),
+                x: Rat::zero(),
             });
         }
         column += 1;

@@ -18,6 +18,7 @@
 //! Configurations are rational throughout. What doubles do is to propose: a direction, a length.
 //! Whether a configuration respects its constraints is decided by exact integers.
 
+pub mod apps;
 mod bound;
 mod branch;
 pub mod generate;

@@ -17,6 +17,7 @@ use super::types::{Hold, Joint, Structure, Term, View};
 use crate::geometry::Vec2;
 use crate::lp::{Model, Range};
 use crate::number::{Int, Rat};
+use std::collections::HashMap;
 
 /// The freedoms of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +67,8 @@ pub(crate) struct Scaffold {
     pub(crate) extra: Vec<(usize, usize)>,
     /// Weights of the objective.
     terms: Vec<Weighted>,
+    /// Bodies that are to move towards an abscissa.
+    gathered: Vec<(usize, Rat)>,
     /// First column of each body.
     columns: Vec<usize>,
     pub(crate) column_count: usize,
@@ -167,6 +170,14 @@ impl Scaffold {
                 .collect(),
             extra: Vec::new(),
             terms: Vec::new(),
+            gathered: structure
+                .objective
+                .iter()
+                .filter_map(|t| match t {
+                    Term::Towards { body, x } => Some((*body, x.clone())),
+                    _ => None,
+                })
+                .collect(),
             columns,
             column_count,
             start: structure.bodies.iter().map(Pose::of).collect(),
@@ -294,6 +305,10 @@ impl Scaffold {
     /// tangent of half its change, which is the angle up to its third power.
     pub(crate) fn displacement(&self, poses: &[Pose]) -> Rat {
         let mut sum = Rat::zero();
+        for (body, x) in &self.gathered {
+            let off = |poses: &[Pose]| (&poses[*body].place.x - x).abs();
+            sum = sum + off(&self.start) - off(poses);
+        }
         for t in &self.terms {
             let (from, to) = (&self.start[t.body], &poses[t.body]);
             if from == to {
@@ -327,6 +342,10 @@ impl Scaffold {
             }
             slot[2] = &slot[2] + &theta;
         }
+        for (body, x) in &self.gathered {
+            let way = (x - &poses[*body].place.x).sign();
+            costs[*body][0] = &costs[*body][0] + &Rat::from(i64::from(way));
+        }
         costs
     }
 
@@ -343,7 +362,7 @@ impl Scaffold {
 
     /// Whether anything is asked.
     pub(crate) fn has_objective(&self) -> bool {
-        !self.terms.is_empty()
+        !self.terms.is_empty() || !self.gathered.is_empty()
     }
 
     /// The columns x, y, θ of a body, as far as it has them.
@@ -383,11 +402,19 @@ impl Scaffold {
         let mut model = Model::new("flex");
         model.maximise = true;
         let costs = self.costs(poses);
+        let lines: HashMap<usize, &Rat> = self.gathered.iter().map(|(b, x)| (*b, x)).collect();
         for (body, cost) in costs.into_iter().enumerate() {
             let names = ["x", "y", "t"];
             for (k, (column, cost)) in self.column(body).iter().zip(cost).enumerate() {
                 if column.is_some() {
+                    let left = lines.get(&body).map(|x| *x - &poses[body].place.x);
                     let range = match (&self.rotation_limit, k) {
+                        // Not past the line.
+                        (_, 0) => match left {
+                            Some(left) if left.sign() > 0 => Range::at_most(left),
+                            Some(left) if left.sign() < 0 => Range::at_least(left),
+                            _ => Range::free(),
+                        },
                         (Some(limit), 2) => Range {
                             lower: Some(-limit),
                             upper: Some(limit.clone()),
@@ -522,6 +549,8 @@ fn weights(structure: &Structure, scaffold: &Scaffold) -> Vec<Weighted> {
                 dy: dy.clone(),
                 dtheta: Rat::zero(),
             }),
+            // Kept apart: its sign changes with the configuration.
+            Term::Towards { .. } => {}
             Term::Radial { body, from } => {
                 let all = 0..structure.bodies.len();
                 for k in all.filter(|k| body.is_none_or(|b| b == *k)) {

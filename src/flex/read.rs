@@ -32,7 +32,15 @@ pub(crate) const TABLES: Tables = &[
     ("objective", &["terms", "radial_from"]),
     (
         "term",
-        &["body", "vertex", "dx", "dy", "dtheta", "radial_from"],
+        &[
+            "body",
+            "vertex",
+            "dx",
+            "dy",
+            "dtheta",
+            "radial_from",
+            "towards_x",
+        ],
     ),
     (
         "step",
@@ -549,18 +557,33 @@ fn term<'a>(
             node.span,
             "mixed-term",
             message,
-            "a term is { body, dx, dy, dtheta }, { body, vertex, dx, dy } or { radial_from }",
+            "a term is { body, dx, dy, dtheta }, { body, vertex, dx, dy }, { body, towards_x } or { radial_from }",
         );
         None
     };
     if let Some(from) = node.get("radial_from") {
-        if ["vertex", "dx", "dy", "dtheta"]
+        if ["vertex", "dx", "dy", "dtheta", "towards_x"]
             .iter()
             .any(|k| node.get(k).is_some())
         {
             return mixed(c, "`radial_from` stands beside weights");
         }
         return c.point(from).map(|from| Term::Radial { body, from });
+    }
+    if let Some(line) = node.get("towards_x") {
+        if ["vertex", "dx", "dy", "dtheta"]
+            .iter()
+            .any(|k| node.get(k).is_some())
+        {
+            return mixed(c, "`towards_x` stands beside weights");
+        }
+        let Some(body) = body else {
+            return mixed(c, "the term names no body");
+        };
+        if matches!(bodies[body].hold, Hold::Pin(_)) {
+            return mixed(c, "a pinned body does not move towards a line");
+        }
+        return c.number(line).map(|x| Term::Towards { body, x });
     }
     let (dx, dy, dtheta) = (weight(c, "dx"), weight(c, "dy"), weight(c, "dtheta"));
     let (dx, dy, dtheta) = (dx?, dy?, dtheta?);

@@ -122,6 +122,8 @@ struct TermTable {
     dtheta: Option<Number>,
     /// Movement away from this point.
     radial_from: Option<Point>,
+    /// Movement of the body's origin towards this abscissa, and not past it.
+    towards_x: Option<Number>,
 }
 
 /// How time steps are taken.

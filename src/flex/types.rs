@@ -116,6 +116,14 @@ pub enum Term {
         /// Weight of its displacement upwards.
         dy: Rat,
     },
+    /// The movement of a body's origin towards an upright line, with weight one: it is not moved
+    /// past the line, and what moves it away from the line counts against it.
+    Towards {
+        /// Index of the body, which is not pinned.
+        body: usize,
+        /// Abscissa of the line.
+        x: Rat,
+    },
     /// The movement of the origins of bodies away from a point, each with weight one.
     Radial {
         /// One body, or all that move.

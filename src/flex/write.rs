@@ -97,6 +97,9 @@ fn write(out: &mut String, s: &Structure) -> std::fmt::Result {
                     weight("dx", dx),
                     weight("dy", dy)
                 ),
+                Term::Towards { body, x } => {
+                    format!("body = {}, towards_x = {}", name(*body), number(x))
+                }
                 Term::Radial { body, from } => {
                     let who = body.map(|b| format!("body = {}, ", name(b)));
                     format!("{}radial_from = {}", who.unwrap_or_default(), point(from))

@@ -1,4 +1,4 @@
-use crate::number::{Rat, Scalar};
+use crate::number::{Enclosed, Rat, Scalar};
 
 /// A point or vector of the plane; its coordinates are rational unless said otherwise.
 #[derive(Clone, PartialEq, Eq, Hash, Debug, Default, PartialOrd, Ord)]
@@ -17,6 +17,13 @@ impl<R: Scalar> Vec2<R> {
     /// A rational point in another arithmetic.
     pub fn from_exact(p: &Vec2) -> Vec2<R> {
         Vec2::new(R::from_rat(&p.x), R::from_rat(&p.y))
+    }
+    /// In certified intervals.
+    pub fn enclosed(&self) -> Vec2<Enclosed> {
+        Vec2::new(
+            Enclosed::new(self.x.interval()),
+            Enclosed::new(self.y.interval()),
+        )
     }
     /// x·x' + y·y'.
     pub fn dot(&self, o: &Vec2<R>) -> R {

@@ -160,6 +160,9 @@ impl<const FILTER: bool> Position<Certified<FILTER>> for Algebraic {
     fn of(x: Rat) -> Algebraic {
         Algebraic::from(x)
     }
+    fn same(&self, o: &Algebraic) -> bool {
+        self.same_handle(o)
+    }
     fn renew(&self) -> Algebraic {
         self.clone()
     }
@@ -189,6 +192,9 @@ impl<const FILTER: bool> Position<Certified<FILTER>> for Algebraic {
 impl<const FILTER: bool> Instant<Certified<FILTER>> for Time {
     fn of(t: Rat) -> Time {
         Time::from(t)
+    }
+    fn same(&self, o: &Time) -> bool {
+        self.same_handle(o)
     }
     fn ratio(x: &Algebraic, num: Poly, den: Poly) -> Time {
         Time::ratio(x, num, den)

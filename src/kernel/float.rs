@@ -134,6 +134,7 @@ fn to_rat(x: f64) -> Rat {
 }
 
 impl Scalar for Double {
+    const EXACT: bool = false;
     fn from_rat(r: &Rat) -> Double {
         Double(r.nearest_f64().unwrap_or(if r.sign() < 0 {
             f64::NEG_INFINITY
@@ -656,6 +657,9 @@ impl Position<Float> for Place {
     fn of(x: Double) -> Place {
         place(x.0)
     }
+    fn same(&self, o: &Place) -> bool {
+        Rc::ptr_eq(&self.0, &o.0)
+    }
     fn renew(&self) -> Place {
         place(self.get())
     }
@@ -694,6 +698,9 @@ impl Position<Float> for Place {
 impl Instant<Float> for Moment {
     fn of(t: Double) -> Moment {
         moment(t.0)
+    }
+    fn same(&self, o: &Moment) -> bool {
+        Rc::ptr_eq(&self.0, &o.0)
     }
     fn ratio(x: &Place, num: FloatPoly, den: FloatPoly) -> Moment {
         let x = x.get();
@@ -734,5 +741,58 @@ impl Instant<Float> for Moment {
     }
     fn publish(&self) -> Time {
         Time::from(to_rat(self.get()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identification_is_transitive_in_any_order() {
+        // 0, 8, 16 in units of a tolerance of 10: neighbours are near, the ends are not.
+        for order in [
+            [0, 1, 2],
+            [0, 2, 1],
+            [1, 0, 2],
+            [1, 2, 0],
+            [2, 0, 1],
+            [2, 1, 0],
+        ] {
+            let mut classes = Classes::new();
+            let mut met: Vec<Option<Rc<Class>>> = vec![None; 3];
+            for i in order {
+                met[i] = Some(classes.identify(8.0 * i as f64, 10.0));
+            }
+            let far = classes.identify(40.0, 10.0);
+            let values: Vec<f64> = met.iter().flatten().map(|c| c.value.get()).collect();
+            // The canonical value is that of the first in the surviving class, the same for all.
+            assert!(
+                values.iter().all(|v| *v == values[0]),
+                "{order:?}: {values:?}"
+            );
+            assert_eq!(far.value.get(), 40.0);
+        }
+    }
+
+    #[test]
+    fn roots_in_doubles() {
+        with_float(&FloatOptions::default(), || {
+            let roots = |c: &[f64]| FloatPoly::new(c).roots_in(-2.0, 2.0);
+            // (x − 1)²(x² + 1), which touches; and without a real root.
+            let p = roots(&[1.0, -2.0, 2.0, -2.0, 1.0]);
+            assert!(p.len() == 1 && (p[0] - 1.0).abs() < 1e-7, "{p:?}");
+            assert!(roots(&[1.0, 0.0, 0.0, 0.0, 1.0]).is_empty());
+            let q = roots(&[-1.0, 0.0, 1.0]);
+            assert_eq!(q, [-1.0, 1.0]);
+            // A cubic with three roots, none of them at an extremum.
+            let r = roots(&[0.0, -1.0, 0.0, 1.0]);
+            assert_eq!(r.len(), 3);
+            assert!(
+                r.iter()
+                    .zip([-1.0, 0.0, 1.0])
+                    .all(|(a, b)| (a - b).abs() < 1e-15)
+            );
+        });
     }
 }

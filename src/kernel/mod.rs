@@ -131,6 +131,8 @@ pub trait Polynomial<K: Kernel>: Clone + Debug {
 pub trait Position<K: Kernel>: Clone + Debug + Ord {
     /// A number.
     fn of(x: K::Num) -> Self;
+    /// Whether both are handles of one position; no arithmetic, false proves nothing.
+    fn same(&self, o: &Self) -> bool;
     /// The position among those of a phase that begins.
     fn renew(&self) -> Self;
     /// An enclosure.
@@ -153,6 +155,8 @@ pub trait Position<K: Kernel>: Clone + Debug + Ord {
 pub trait Instant<K: Kernel>: Clone + Debug + Ord {
     /// A number.
     fn of(t: K::Num) -> Self;
+    /// Whether both are handles of one instant; no arithmetic, false proves nothing.
+    fn same(&self, o: &Self) -> bool;
     /// num(x)/den(x), where den does not vanish.
     fn ratio(x: &K::Root, num: K::Poly, den: K::Poly) -> Self;
     /// The instant that is the root itself.

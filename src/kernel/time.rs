@@ -185,14 +185,13 @@ impl Ord for Time {
         }
         match (&self.0.form, &o.0.form) {
             (Form::Rational(a), Form::Rational(b)) => {
-                let order = a.cmp(b);
-                let point = order.is_eq() && x.lo == x.hi;
-                if point && x.is_finite() {
-                    filter::settled(Stage::Double);
-                } else {
-                    filter::settled_exactly(order.is_eq(), a.bits().max(b.bits()));
+                // Fractions in lowest terms are one number if they are spelt alike.
+                if a == b {
+                    filter::settled(Stage::Name);
+                    return Ordering::Equal;
                 }
-                order
+                filter::settled_exactly(false, a.bits().max(b.bits()));
+                a.cmp(b)
             }
             (Form::Rational(a), _) => o.cmp_rat(a).reverse(),
             (_, Form::Rational(b)) => self.cmp_rat(b),

@@ -8,7 +8,7 @@
 use super::trajectory::RootContact;
 use crate::contact::Ring;
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
-use crate::number::Rat;
+use crate::number::{Interval, Rat};
 use crate::scene::{Obstacle, Root};
 
 /// The first instant t ≥ 0 (at most `until`, where given) after which the root's interior would
@@ -72,6 +72,26 @@ pub fn obstacle_polygon(o: &Obstacle) -> Polygon {
     Polygon::new(o.vertices.clone(), o.holes.clone())
 }
 
+/// A box around all that the body passes over.
+fn swept(body: &Ring, v: &Vec2, until: Option<&Rat>) -> (Interval, Interval) {
+    let along = |of: fn(&Vec2) -> &Rat| {
+        let none = Interval {
+            lo: f64::INFINITY,
+            hi: f64::NEG_INFINITY,
+        };
+        let at = |p: &Vec2| of(p).interval();
+        let mut all = body.vertices.iter().fold(none, |all, p| all.hull(&at(p)));
+        match until {
+            Some(u) => all = all.hull(&(all + at(&v.scale(u)))),
+            None if of(v).sign() > 0 => all.hi = f64::INFINITY,
+            None if of(v).sign() < 0 => all.lo = f64::NEG_INFINITY,
+            None => {}
+        }
+        all
+    };
+    (along(|p| &p.x), along(|p| &p.y))
+}
+
 fn collect(
     body: &Ring,
     ring: &Ring,
@@ -97,8 +117,18 @@ fn collect(
         (s.sign() >= 0 && s <= along.norm2()).then_some(t)
     };
     let back = -v;
+    let swept = swept(body, v, until);
+    let near: Vec<usize> = (0..ring.len())
+        .filter(|&j| {
+            let (q, q1) = (&ring.vertices[j], &ring.vertices[ring.next(j)]);
+            let x = q.x.interval().hull(&q1.x.interval());
+            let y = q.y.interval().hull(&q1.y.interval());
+            x.meets(&swept.0) && y.meets(&swept.1)
+        })
+        .collect();
     for (i, p) in body.vertices.iter().enumerate() {
-        for (j, q) in ring.vertices.iter().enumerate() {
+        for &j in &near {
+            let q = &ring.vertices[j];
             let (p1, q1) = (&body.vertices[body.next(i)], &ring.vertices[ring.next(j)]);
             let contact = |vertex_of_root| RootContact {
                 obstacle,

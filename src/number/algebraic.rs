@@ -87,6 +87,23 @@ impl Algebraic {
             Root::enclosed(p, y, -1).into(),
         ]
     }
+    /// Whether both are handles of one number (no arithmetic; false proves nothing).
+    pub fn same_handle(&self, o: &Algebraic) -> bool {
+        match (&self.0, &o.0) {
+            (Rational(a), Rational(b)) => Arc::ptr_eq(a, b),
+            (RootOf(a), RootOf(b)) => Arc::ptr_eq(a, b),
+            (QuotientOf(a), QuotientOf(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+    /// Counts the question where both are handles of one number.
+    fn named_alike(&self, o: &Algebraic) -> bool {
+        let same = self.same_handle(o);
+        if same {
+            filter::settled(Stage::Name);
+        }
+        same
+    }
     /// The same number as a rational or a root.
     fn settled(&self) -> &Algebraic {
         match &self.0 {
@@ -524,11 +541,27 @@ fn told_apart(x: &Interval, y: &Interval) -> Option<Ordering> {
     Some(order)
 }
 
+/// Counts an equality of roots as settled, and keeps it where it holds: by name where both have
+/// one polynomial (and so, their intervals being isolating, no arithmetic told them equal).
+fn settled_equality(a: &Arc<Root>, b: &Arc<Root>, same: bool) {
+    if same {
+        Root::unite(a, b);
+        if a.poly == b.poly {
+            return filter::settled(Stage::Name);
+        }
+    }
+    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
+}
+
 /// Two rationals that their enclosures do not tell apart.
 fn cmp_values(a: &Rat, b: &Rat) -> Ordering {
-    let order = a.cmp(b);
-    filter::settled_exactly(order.is_eq(), a.bits().max(b.bits()));
-    order
+    // Fractions in lowest terms are one number if and only if they are spelt alike.
+    if a == b {
+        filter::settled(Stage::Name);
+        return Ordering::Equal;
+    }
+    filter::settled_exactly(false, a.bits().max(b.bits()));
+    a.cmp(b)
 }
 
 /// Two roots that are known to differ.
@@ -581,6 +614,9 @@ impl From<Root> for Algebraic {
 }
 impl PartialEq for Algebraic {
     fn eq(&self, o: &Algebraic) -> bool {
+        if self.named_alike(o) {
+            return true;
+        }
         if let Some(o) = told_apart(&self.interval(), &o.interval()) {
             return o.is_eq();
         }
@@ -592,13 +628,13 @@ impl PartialEq for Algebraic {
                 a.cmp_same(b).is_eq()
             }
             _ => match (self.root(), o.root()) {
-                (Ok(a), Ok(b)) if Arc::ptr_eq(a, b) => {
+                (Ok(a), Ok(b)) if Arc::ptr_eq(a.representative(), b.representative()) => {
                     filter::settled(Stage::Name);
                     true
                 }
                 (Ok(a), Ok(b)) => {
                     let same = a.enclosure().meets(&b.enclosure()) && a.equals(b);
-                    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
+                    settled_equality(a, b, same);
                     same
                 }
                 (Err(r), _) => o.cmp_rat(r).is_eq(),
@@ -622,6 +658,9 @@ impl Quotient {
 }
 impl Ord for Algebraic {
     fn cmp(&self, o: &Algebraic) -> Ordering {
+        if self.named_alike(o) {
+            return Ordering::Equal;
+        }
         if let Some(o) = told_apart(&self.interval(), &o.interval()) {
             return o;
         }
@@ -639,7 +678,7 @@ impl Ord for Algebraic {
             (Err(r), _) => return o.cmp_rat(r).reverse(),
             (_, Err(r)) => return self.cmp_rat(r),
         };
-        if Arc::ptr_eq(a, b) {
+        if Arc::ptr_eq(a.representative(), b.representative()) {
             filter::settled(Stage::Name);
             return Ordering::Equal;
         }
@@ -648,7 +687,7 @@ impl Ord for Algebraic {
             return o;
         }
         if a.equals(b) {
-            filter::settled_exactly(true, a.poly.most_bits().max(b.poly.most_bits()));
+            settled_equality(a, b, true);
             Ordering::Equal
         } else {
             cmp_different(a, b)

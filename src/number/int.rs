@@ -3,12 +3,11 @@
 //! The idea: almost every integer of a real scene fits a machine word, and the few that do not must
 //! cost no more than a big-number library asks. So an `Int` is an `i128` held inline, and only what
 //! does not fit lives on the heap. The form is canonical (a value that fits is always inline), which
-//! makes equality and hashing a plain comparison of representations. This file is the only one
-//! of the crate that names a big-number backend; everything else goes through the methods here.
+//! makes equality and hashing a plain comparison of representations. The heap is
+//! [`Long`]'s, the only file that names a big-number library; all else goes through the methods here.
 
-use num_bigint::{BigInt, BigUint, Sign};
-use num_integer::Integer;
-use num_traits::{Signed, ToPrimitive};
+use super::long::Long;
+use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -29,12 +28,12 @@ pub struct Int(Repr);
 #[derive(Clone, PartialEq, Eq, Hash)]
 enum Repr {
     Small(i128),
-    Big(BigInt),
+    Big(Long),
 }
 use Repr::{Big, Small};
 
 /// Restores the canonical form.
-fn canonical(b: BigInt) -> Int {
+fn canonical(b: Long) -> Int {
     if b.bits() <= 128
         && let Some(v) = b.to_i128()
     {
@@ -68,7 +67,7 @@ pub(crate) fn gcd_u64(mut a: u64, mut b: u64) -> u64 {
     a << shift
 }
 
-fn gcd_u128(mut a: u128, mut b: u128) -> u128 {
+pub(super) fn gcd_u128(mut a: u128, mut b: u128) -> u128 {
     if a == 0 || b == 0 {
         return a | b;
     }
@@ -95,103 +94,6 @@ fn gcd_u128(mut a: u128, mut b: u128) -> u128 {
     a << shift
 }
 
-fn limbs(b: &BigInt) -> Vec<u64> {
-    b.iter_u64_digits().collect()
-}
-
-fn from_limbs(l: &[u64]) -> BigUint {
-    let mut digits = Vec::with_capacity(2 * l.len());
-    for &d in l {
-        digits.push(d as u32);
-        digits.push((d >> 32) as u32);
-    }
-    BigUint::new(digits)
-}
-
-fn trim(l: &mut Vec<u64>) {
-    while l.last() == Some(&0) {
-        l.pop();
-    }
-}
-
-/// Whether a < b, both trimmed.
-fn limbs_less(a: &[u64], b: &[u64]) -> bool {
-    a.len()
-        .cmp(&b.len())
-        .then_with(|| a.iter().rev().cmp(b.iter().rev()))
-        == Ordering::Less
-}
-
-/// Lehmer's gcd (Knuth, TAOCP 2, algorithm 4.5.2 L): Euclid's quotients are found on the leading 62
-/// bits and applied to the whole numbers some thirty bits at a time.
-fn gcd_limbs(mut a: Vec<u64>, mut b: Vec<u64>) -> BigUint {
-    trim(&mut a);
-    trim(&mut b);
-    if limbs_less(&a, &b) {
-        std::mem::swap(&mut a, &mut b);
-    }
-    loop {
-        if b.is_empty() {
-            return from_limbs(&a);
-        }
-        if a.len() <= 2 {
-            let word = |l: &[u64]| {
-                l.iter()
-                    .rev()
-                    .fold(0u128, |acc, &d| (acc << 64) | d as u128)
-            };
-            return BigUint::from(gcd_u128(word(&a), word(&b)));
-        }
-        let n = a.len();
-        let s = a[n - 1].leading_zeros();
-        let top = |l: &[u64]| {
-            let at = |i: usize| l.get(i).copied().unwrap_or(0) as u128;
-            let two = (at(n - 1) << 64) | at(n - 2);
-            ((two << s) >> 66) as i64
-        };
-        let (mut x, mut y) = (top(&a), top(&b));
-        let (mut ca, mut cb, mut cc, mut cd) = (1i64, 0i64, 0i64, 1i64);
-        while y + cc != 0 && y + cd != 0 {
-            let q = (x + ca) / (y + cc);
-            if q != (x + cb) / (y + cd) {
-                break;
-            }
-            let t = ca - q * cc;
-            ca = cc;
-            cc = t;
-            let t = cb - q * cd;
-            cb = cd;
-            cd = t;
-            let t = x - q * y;
-            x = y;
-            y = t;
-        }
-        if cb == 0 {
-            // The leading bits settle no quotient: one true division.
-            let (ba, bb) = (from_limbs(&a), from_limbs(&b));
-            let r = ba % &bb;
-            a = b;
-            b = r.iter_u64_digits().collect();
-        } else {
-            b.resize(n, 0);
-            let (mut carry_a, mut carry_b) = (0i128, 0i128);
-            for (pa, pb) in a.iter_mut().zip(b.iter_mut()) {
-                let (va, vb) = (*pa as i128, *pb as i128);
-                // |cofactor| < 2^62 and a limb < 2^64; the two products differ in sign.
-                carry_a += ca as i128 * va + cb as i128 * vb;
-                carry_b += cc as i128 * va + cd as i128 * vb;
-                *pa = carry_a as u64;
-                *pb = carry_b as u64;
-                carry_a >>= 64;
-                carry_b >>= 64;
-            }
-            debug_assert!(carry_a == 0 && carry_b == 0);
-            trim(&mut a);
-            trim(&mut b);
-        }
-    }
-}
-
 impl Int {
     /// Zero.
     #[inline]
@@ -208,11 +110,7 @@ impl Int {
     pub fn sign(&self) -> i32 {
         match &self.0 {
             Small(v) => v.signum() as i32,
-            Big(b) => match b.sign() {
-                Sign::Minus => -1,
-                Sign::NoSign => 0,
-                Sign::Plus => 1,
-            },
+            Big(b) => b.sign(),
         }
     }
     /// Whether zero.
@@ -229,7 +127,7 @@ impl Int {
     pub fn is_even(&self) -> bool {
         match &self.0 {
             Small(v) => v & 1 == 0,
-            Big(b) => !b.bit(0),
+            Big(b) => b.is_even(),
         }
     }
     /// Absolute value.
@@ -255,27 +153,22 @@ impl Int {
             }
             (Small(a), Big(b)) | (Big(b), Small(a)) => {
                 if *a == 0 {
-                    return canonical(b.abs());
+                    return Int(Big(b.clone())).abs();
                 }
                 let a = a.unsigned_abs();
                 if a == 1 {
                     return Int::one();
                 }
-                let r = if a >> 64 == 0 { b % (a as u64) } else { b % a };
-                let r = r
-                    .abs()
-                    .to_u128()
-                    .expect("a remainder is less than the divisor");
-                Int::from_u128(gcd_u128(a, r))
+                Int::from_u128(gcd_u128(a, b.rem(a)))
             }
-            (Big(a), Big(b)) => canonical(BigInt::from(gcd_limbs(limbs(a), limbs(b)))),
+            (Big(a), Big(b)) => canonical(a.gcd(b)),
         }
     }
     /// From an unsigned 128-bit value.
     pub(crate) fn from_u128(v: u128) -> Int {
         match i128::try_from(v) {
             Ok(v) => Int(Small(v)),
-            Err(_) => Int(Big(BigInt::from(v))),
+            Err(_) => Int(Big(Long::of_unsigned(v))),
         }
     }
     /// Exact quotient; the caller knows that `d` divides `self` (the result means nothing otherwise).
@@ -298,9 +191,9 @@ impl Int {
                     None => self.negated(),
                 }
             }
-            (Big(a), Small(b)) => canonical(if narrow(*b) { a / (*b as i64) } else { a / *b }),
-            (Small(a), Big(b)) => canonical(BigInt::from(*a) / b),
-            (Big(a), Big(b)) => canonical(a / b),
+            (Big(a), Small(b)) => canonical(a.div_small(*b)),
+            (Small(a), Big(b)) => canonical(Long::of(*a).div_exact(b)),
+            (Big(a), Big(b)) => canonical(a.div_exact(b)),
         }
     }
     /// Floor division: `self = q·d + r` with 0 ≤ r < d for d > 0 (and d < r ≤ 0 for d < 0).
@@ -351,15 +244,15 @@ impl Int {
             Small(0) => Int::zero(),
             _ if k == 0 => self.clone(),
             Small(v) if k < v.unsigned_abs().leading_zeros() as u64 => Int(Small(v << k)),
-            Small(v) => canonical(BigInt::from(*v) << k),
-            Big(b) => Int(Big(b << k)),
+            Small(v) => canonical(Long::of(*v).shl(k)),
+            Big(b) => Int(Big(b.shl(k))),
         }
     }
     /// floor(self / 2^k).
     pub fn shr(&self, k: u64) -> Int {
         match &self.0 {
             Small(v) => Int(Small(v >> k.min(127))),
-            Big(b) => canonical(b >> k),
+            Big(b) => canonical(b.shr(k)),
         }
     }
     /// self^k.
@@ -380,7 +273,7 @@ impl Int {
             } else {
                 v.isqrt()
             }))),
-            Big(b) if b.is_negative() => None,
+            Big(b) if b.sign() < 0 => None,
             Big(b) => Some(canonical(b.sqrt())),
         }
     }
@@ -393,7 +286,7 @@ impl Int {
         }
         let low = match &self.0 {
             Small(v) => (v & 63) as u64,
-            Big(b) => b.iter_u64_digits().next().unwrap_or(0) & 63,
+            Big(b) => b.low_word() & 63,
         };
         if SQUARES >> low & 1 == 0 {
             return None;
@@ -426,10 +319,8 @@ impl Int {
             Small(v) if narrow(*v) && m >> 63 == 0 => (*v as i64).rem_euclid(m as i64) as u64,
             Small(v) => v.rem_euclid(m as i128) as u64,
             Big(b) => {
-                let r = (b.magnitude() % m)
-                    .to_u64()
-                    .expect("a remainder is less than the modulus");
-                if b.is_negative() && r != 0 { m - r } else { r }
+                let r = b.rem(u128::from(m)) as u64;
+                if b.sign() < 0 && r != 0 { m - r } else { r }
             }
         }
     }
@@ -441,7 +332,7 @@ impl Int {
                 f(v as u64);
                 f((v >> 64) as u64);
             }
-            Big(b) => b.iter_u64_digits().for_each(f),
+            Big(b) => b.words().into_iter().for_each(f),
         }
     }
     /// |self| = (top + fraction)·2^shift with 0 ≤ fraction < 1, `top` of at most 64 bits and the
@@ -455,8 +346,7 @@ impl Int {
                 (top as u64, shift as u64, top << shift != a)
             }
             Big(b) => {
-                let mut words = b.iter_u64_digits().rev();
-                let (h, l) = (words.next().unwrap_or(0), words.next().unwrap_or(0));
+                let (h, l) = b.top_words();
                 let s = h.leading_zeros();
                 let two = (((h as u128) << 64 | l as u128) << s >> 64) as u64;
                 let shift = b.bits() - 64;
@@ -464,9 +354,9 @@ impl Int {
             }
         }
     }
-    fn to_big(&self) -> BigInt {
+    fn to_big(&self) -> Long {
         match &self.0 {
-            Small(v) => BigInt::from(*v),
+            Small(v) => Long::of(*v),
             Big(b) => b.clone(),
         }
     }
@@ -475,10 +365,10 @@ impl Int {
         match (&self.0, &o.0) {
             (Small(a), Small(b)) => match a.checked_add(*b) {
                 Some(v) => Int(Small(v)),
-                None => Int(Big(BigInt::from(*a) + *b)),
+                None => Int(Big(Long::of(*a).plus_small(*b))),
             },
-            (Big(a), Small(b)) | (Small(b), Big(a)) => canonical(a + *b),
-            (Big(a), Big(b)) => canonical(a + b),
+            (Big(a), Small(b)) | (Small(b), Big(a)) => canonical(a.plus_small(*b)),
+            (Big(a), Big(b)) => canonical(a.plus(b)),
         }
     }
     #[inline]
@@ -486,11 +376,11 @@ impl Int {
         match (&self.0, &o.0) {
             (Small(a), Small(b)) => match a.checked_sub(*b) {
                 Some(v) => Int(Small(v)),
-                None => Int(Big(BigInt::from(*a) - *b)),
+                None => Int(Big(Long::of(*a).minus(&Long::of(*b)))),
             },
-            (Big(a), Small(b)) => canonical(a - *b),
-            (Small(a), Big(b)) => canonical(*a - b),
-            (Big(a), Big(b)) => canonical(a - b),
+            (Big(a), Small(b)) => canonical(a.minus(&Long::of(*b))),
+            (Small(a), Big(b)) => canonical(b.negated().plus_small(*a)),
+            (Big(a), Big(b)) => canonical(a.minus(b)),
         }
     }
     #[inline]
@@ -502,19 +392,17 @@ impl Int {
                 }
                 match a.checked_mul(*b) {
                     Some(v) => Int(Small(v)),
-                    None => canonical(BigInt::from(*a) * *b),
+                    None => canonical(Long::of(*a).times_small(*b)),
                 }
             }
             (Big(a), Small(b)) | (Small(b), Big(a)) => {
                 if *b == 0 {
                     Int::zero()
-                } else if narrow(*b) {
-                    canonical(a * (*b as i64))
                 } else {
-                    canonical(a * *b)
+                    canonical(a.times_small(*b))
                 }
             }
-            (Big(a), Big(b)) => Int(Big(a * b)),
+            (Big(a), Big(b)) => Int(Big(a.times(b))),
         }
     }
     #[inline]
@@ -522,9 +410,9 @@ impl Int {
         match &self.0 {
             Small(v) => match v.checked_neg() {
                 Some(v) => Int(Small(v)),
-                None => Int(Big(-BigInt::from(*v))),
+                None => Int(Big(Long::of(*v).negated())),
             },
-            Big(b) => canonical(-b),
+            Big(b) => canonical(b.negated()),
         }
     }
 }
@@ -545,8 +433,8 @@ impl Ord for Int {
             (Small(a), Small(b)) => a.cmp(b),
             (Big(a), Big(b)) => a.cmp(b),
             // A big value lies outside the range of every small one.
-            (Big(a), Small(_)) => a.sign().cmp(&Sign::NoSign),
-            (Small(_), Big(b)) => Sign::NoSign.cmp(&b.sign()),
+            (Big(a), Small(_)) => a.sign().cmp(&0),
+            (Small(_), Big(b)) => 0.cmp(&b.sign()),
         }
     }
 }
@@ -588,14 +476,14 @@ impl From<u64> for Int {
 }
 impl From<BigInt> for Int {
     fn from(v: BigInt) -> Int {
-        canonical(v)
+        canonical(Long::from_num(v))
     }
 }
 impl From<Int> for BigInt {
     fn from(v: Int) -> BigInt {
         match v.0 {
             Small(v) => BigInt::from(v),
-            Big(b) => b,
+            Big(b) => b.into_num(),
         }
     }
 }
@@ -613,10 +501,8 @@ impl std::str::FromStr for Int {
                 .map(|v| Int(Small(v)))
                 .map_err(|e| e.to_string());
         }
-        let v = BigUint::parse_bytes(digits.as_bytes(), 10)
-            .ok_or_else(|| format!("not an integer: {s:?}"))?;
-        let v = BigInt::from(v);
-        Ok(canonical(if s.starts_with('-') { -v } else { v }))
+        let v = Long::parse(digits).ok_or_else(|| format!("not an integer: {s:?}"))?;
+        Ok(canonical(if s.starts_with('-') { v.negated() } else { v }))
     }
 }
 

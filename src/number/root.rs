@@ -24,6 +24,9 @@ pub(crate) struct Root {
     enclosure: OnceLock<(Interval, Option<Span>)>,
     rational: OnceLock<Option<Rat>>,
     minimal: OnceLock<Arc<Poly>>,
+    /// Another root that has been proven to be the same number; what is proven once is one handle
+    /// from then on. Links lead to lower addresses only, so they form no circle.
+    same: OnceLock<Arc<Root>>,
 }
 
 impl Root {
@@ -39,6 +42,28 @@ impl Root {
             enclosure,
             rational,
             minimal,
+            same: OnceLock::new(),
+        }
+    }
+    /// The handle that stands for all roots proven to be this number.
+    pub(crate) fn representative(self: &Arc<Root>) -> &Arc<Root> {
+        let mut root = self;
+        while let Some(next) = root.same.get() {
+            root = next;
+        }
+        root
+    }
+    /// Notes that two roots have been proven to be one number.
+    pub(crate) fn unite(a: &Arc<Root>, b: &Arc<Root>) {
+        let (a, b) = (a.representative(), b.representative());
+        let (low, high) = if Arc::as_ptr(a) < Arc::as_ptr(b) {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        if !Arc::ptr_eq(low, high) {
+            // Another thread may have linked it meanwhile; then this proof is merely not kept.
+            let _ = high.same.set(low.clone());
         }
     }
     /// With an isolating interval of doubles that is itself the narrow enclosure.

@@ -1,8 +1,9 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
-use super::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
+use super::{Arc, ArcId, Curve, CurveId, End, Point, Shape, Side};
 use crate::contact::{
-    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig, patches,
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Ring, Trig,
+    patches_within,
 };
 use crate::geometry::Vec2;
 use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
@@ -23,6 +24,8 @@ pub struct Slice<K: Kernel = Filtered> {
     /// The patch that each arc was cut from (none for a limit stop).
     pub(super) patch_of: Vec<Option<u32>>,
     pub(super) patches: Vec<Patch<K::Num>>,
+    /// Per curve, the named points that it passes through.
+    pub(super) named: Vec<Vec<super::Point<K>>>,
     pub(super) crossings: Mutex<super::predicates::CrossCache<K>>,
 }
 
@@ -36,8 +39,8 @@ impl<K: Kernel> Slice<K> {
         obstacles: &[ObstacleShape<K::Num>],
         limits: Option<&(K::Num, K::Num)>,
     ) -> Slice<K> {
-        let patches = patches(&frame, pawl, obstacles);
-        let mut b = Builder::new(frame, pawl, obstacles);
+        let patches = patches_within(&frame, pawl, obstacles);
+        let mut b = Builder::<K>::new(frame, pawl, obstacles);
         for (i, patch) in patches.iter().enumerate() {
             b.add(patch, i as u32);
         }
@@ -49,7 +52,22 @@ impl<K: Kernel> Slice<K> {
         for (i, a) in b.arcs.iter().enumerate() {
             by_chart[a.chart.index()].push(i as ArcId);
         }
+        let mut named: Vec<Vec<Point<K>>> = vec![Vec::new(); b.curves.len()];
+        for (curve, chart, n) in &b.through {
+            let known = &mut named[*curve as usize];
+            if let Some(t) = n.t.get()
+                && !known.iter().any(|p| p.x.same(&n.x))
+            {
+                known.push(Point {
+                    chart: *chart,
+                    x: n.x.clone(),
+                    t: t.clone(),
+                    on: vec![*curve],
+                });
+            }
+        }
         Slice {
+            named,
             frame: b.frame,
             curves: b.curves,
             arcs: b.arcs,
@@ -111,30 +129,60 @@ struct Builder<'a, K: Kernel> {
     arcs: Vec<Arc<K>>,
     patch_of: Vec<Option<u32>>,
     named: HashMap<Name<K::Num>, Names<K>>,
-    pawl_lines: Vec<u32>,
-    obstacle_lines: Vec<u32>,
+    pawl_lines: Lines<'a, K>,
+    obstacle_lines: Lines<'a, K>,
     minus_one: K::Num,
     one: K::Num,
     speed2: K::Num,
+    /// Curves and the named points on them.
+    through: Vec<(CurveId, Chart, Rc<Named<K>>)>,
 }
 
-/// Supporting lines (normal, offset) numbered so that collinear edges share a number.
-fn number_lines<'a, K: Kernel>(
-    edges: impl Iterator<Item = (&'a Vec2<K::Num>, &'a Vec2<K::Num>)>,
-) -> Vec<u32> {
-    let mut seen: HashMap<K::Key, u32> = HashMap::new();
-    edges
-        .map(|(n, on)| {
-            // Offset first, so that the sign is fixed by the normal alone and orientation stays
-            // out of the name.
-            let line = [n.dot(on), n.x.clone(), n.y.clone()];
-            let next = seen.len() as u32;
-            match K::primitive(&line) {
-                Some((line, _)) => *seen.entry(K::key(&line)).or_insert(next),
-                None => next,
-            }
-        })
-        .collect()
+/// Supporting lines (normal, offset) numbered so that collinear edges share a number; each when first asked
+/// for, since most edges of a long obstacle are out of reach.
+struct Lines<'a, K: Kernel> {
+    rings: Vec<&'a Ring<K::Num>>,
+    /// The first edge of each ring, numbered through all of them.
+    first: Vec<u32>,
+    seen: HashMap<K::Key, u32>,
+    of_edge: HashMap<u32, u32>,
+}
+
+impl<'a, K: Kernel> Lines<'a, K> {
+    fn new(rings: impl Iterator<Item = &'a Ring<K::Num>>) -> Lines<'a, K> {
+        let rings: Vec<_> = rings.collect();
+        let mut next = 0;
+        let mut first = Vec::with_capacity(rings.len());
+        for r in &rings {
+            first.push(next);
+            next += r.len() as u32;
+        }
+        Lines {
+            rings,
+            first,
+            seen: HashMap::new(),
+            of_edge: HashMap::new(),
+        }
+    }
+
+    fn number(&mut self, edge: u32) -> u32 {
+        if let Some(&n) = self.of_edge.get(&edge) {
+            return n;
+        }
+        let r = self.first.partition_point(|&f| f <= edge) - 1;
+        let (ring, k) = (self.rings[r], (edge - self.first[r]) as usize);
+        let (n, on) = (&ring.normals[k], &ring.vertices[k]);
+        // Offset first, so that the sign is fixed by the normal alone and orientation stays
+        // out of the name.
+        let line = [n.dot(on), n.x.clone(), n.y.clone()];
+        let next = self.of_edge.len() as u32;
+        let number = match K::primitive(&line) {
+            Some((line, _)) => *self.seen.entry(K::key(&line)).or_insert(next),
+            None => next,
+        };
+        self.of_edge.insert(edge, number);
+        number
+    }
 }
 
 /// One break point of a patch in a chart.
@@ -230,13 +278,8 @@ impl<'a, K: Kernel> Builder<'a, K> {
         pawl: &'a PawlShape<K::Num>,
         obstacles: &'a [ObstacleShape<K::Num>],
     ) -> Builder<'a, K> {
-        let pawl_lines = number_lines::<K>(pawl.ring.normals.iter().zip(&pawl.ring.vertices));
-        let obstacle_lines = number_lines::<K>(
-            obstacles
-                .iter()
-                .flat_map(|o| &o.rings)
-                .flat_map(|r| r.normals.iter().zip(&r.vertices)),
-        );
+        let pawl_lines = Lines::new(std::iter::once(&pawl.ring));
+        let obstacle_lines = Lines::new(obstacles.iter().flat_map(|o| &o.rings));
         let speed2 = frame.v.norm2();
         Builder {
             frame,
@@ -252,6 +295,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
             minus_one: K::Num::one().negated(),
             one: K::Num::one(),
             speed2,
+            through: Vec::new(),
         }
     }
 
@@ -344,6 +388,9 @@ impl<'a, K: Kernel> Builder<'a, K> {
             return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
         };
         for chart in Chart::BOTH {
+            if !patch.charts[chart.index()] {
+                continue;
+            }
             let c = &self.curves[curve as usize];
             let (p, q) = (in_chart::<K>(&c.p, chart), in_chart::<K>(&c.q, chart));
             let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
@@ -381,8 +428,8 @@ impl<'a, K: Kernel> Builder<'a, K> {
         for k in 0..2 {
             let (pe, oe) = patch.flush[k];
             let key = Name::Flush(
-                self.pawl_lines[pe as usize],
-                self.obstacle_lines[oe as usize],
+                self.pawl_lines.number(pe),
+                self.obstacle_lines.number(oe),
                 chart,
             );
             for n in self
@@ -433,6 +480,12 @@ impl<'a, K: Kernel> Builder<'a, K> {
             }
         }
         self.wedge_breaks(patch, chart, &mut breaks);
+        // A name may lie on the curve's level instead, at another time.
+        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
+        if !factored && K::names() {
+            let points = breaks.iter().filter_map(|b| b.point.clone());
+            self.through.extend(points.map(|n| (curve, chart, n)));
+        }
         // dt/dx = −(P'Q − PQ')/Q².
         let bend = rp.derivative().times(rq).minus(&rp.times(&rq.derivative()));
         for n in self
@@ -445,7 +498,6 @@ impl<'a, K: Kernel> Builder<'a, K> {
             });
         }
         self.plain_breaks(rq, &mut breaks);
-        let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
         if factored {
             self.plain_breaks(
                 &if p.is_zero() { q.clone() } else { p.common(q) },
@@ -472,7 +524,6 @@ impl<'a, K: Kernel> Builder<'a, K> {
             let up = bend_sign * f1;
             let end = |b: &Break<K>| {
                 let t = || K::Time::ratio(&b.x, rp.negated(), rq.clone());
-                // A name may lie on the curve's level instead, at another time.
                 let t = match &b.point {
                     Some(n) if !factored && K::names() => n.t.get_or_init(t).clone(),
                     _ => t(),

@@ -63,17 +63,37 @@ impl<K: Kernel> Slice<K> {
         let list: std::sync::Arc<[Cross<K>]> = if h.is_zero() {
             std::sync::Arc::new([])
         } else {
-            h.chart_roots()
+            let mut roots = h.chart_roots();
+            roots.retain(|x| x.sign_of(q) != 0);
+            let mut list: Vec<Cross<K>> = roots
                 .into_iter()
-                .filter(|x| x.sign_of(q) != 0)
                 .map(|x| Cross {
                     t: K::Time::ratio(&x, p.negated(), q.clone()),
                     x,
                 })
-                .collect()
+                .collect();
+            self.name_crossings(key, &mut list);
+            list.into()
         };
         lock().insert(key, list.clone());
         list
+    }
+
+    /// Gives crossings at points that both curves pass through by name the handles of those: such
+    /// a point is a crossing, so where only one crossing can be it, it is that one.
+    fn name_crossings(&self, (a, b, chart): (CurveId, CurveId, Chart), list: &mut [Cross<K>]) {
+        let theirs = &self.named[b as usize];
+        for p in self.named[a as usize].iter().filter(|p| p.chart == chart) {
+            if !theirs.iter().any(|o| o.x.same(&p.x)) {
+                continue;
+            }
+            let at = p.x.interval();
+            let mut near = list.iter_mut().filter(|c| c.x.interval().meets(&at));
+            if let (Some(c), None) = (near.next(), near.next()) {
+                c.x = p.x.clone();
+                c.t = p.t.clone();
+            }
+        }
     }
 
     /// When a graph arc's curve passes position x (where its denominator does not vanish).
@@ -109,6 +129,11 @@ impl<K: Kernel> Slice<K> {
             Shape::Level => arc.lo.x == z.x && arc.lo.t <= z.t && z.t <= arc.hi.t,
             Shape::Wall => arc.lo.t == z.t && arc.spans_x(&z.x),
             Shape::Graph { .. } => {
+                let is_end = |e: &super::End<K>| e.x.same(&z.x) && e.t.same(&z.t);
+                if is_end(&arc.lo) || is_end(&arc.hi) {
+                    filter::settled(Stage::Name);
+                    return true;
+                }
                 arc.spans_x(&z.x) && (self.lies_on(arc, z) || self.passes(arc, z))
             }
         }

@@ -37,6 +37,9 @@ pub(crate) struct FlexArgs {
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
+    /// Only list the constraints where the structure stands, and what each alone allows
+    #[arg(long)]
+    constraints: bool,
 }
 
 /// Arguments of `snapfit generate`.
@@ -45,8 +48,12 @@ pub(crate) struct GenerateArgs {
     /// grid, jit, jrot, ring, chain, wall, can or flock
     family: String,
     /// Number of bodies
-    #[arg(long)]
-    bodies: usize,
+    #[arg(long, required_unless_present = "drawing")]
+    bodies: Option<usize>,
+    /// Instead of a family, the name of a structure whose blocks this file shows: # a block, @ a
+    /// fixed one, . nothing
+    #[arg(long, value_name = "FILE", conflicts_with = "bodies")]
+    drawing: Option<PathBuf>,
     /// What random shifts and turns come from
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -56,13 +63,23 @@ pub(crate) struct GenerateArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Accuracy {
+pub(crate) enum Accuracy {
     /// Nothing is proven
     Float,
     /// A rational enclosure of every optimum
     Bounds,
     /// Every optimum itself
     Exact,
+}
+
+impl Accuracy {
+    pub(crate) fn level(self) -> lp::Accuracy {
+        match self {
+            Accuracy::Float => lp::Accuracy::Float,
+            Accuracy::Bounds => lp::Accuracy::Bounds,
+            Accuracy::Exact => lp::Accuracy::Exact,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -81,7 +98,7 @@ enum PathArg {
     Safe,
 }
 
-fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
+pub(crate) fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
     let overrides = crate::overrides(common)?;
     let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
     if !common.quiet {
@@ -95,6 +112,9 @@ fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Fai
 pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
     let (name, bytes) = crate::read_bytes(&args.common)?;
     let file = parse(&args.common, &name, &bytes)?;
+    if args.constraints {
+        return crate::flex_apps::run_constraints(&args.common, file.structure());
+    }
     if file.structure().objective.is_empty() {
         return Err(Failure::Scene(vec![
             file.error_at("structure", "missing-key")
@@ -161,7 +181,14 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
 }
 
 pub(crate) fn run_generate(args: &GenerateArgs) -> Result<u8, Failure> {
-    let structure = flex::generate::generate(&args.family, args.bodies, args.seed)?;
+    let structure = match (&args.drawing, args.bodies) {
+        (Some(path), _) => {
+            let text =
+                std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
+            flex::apps::layout::layout(&args.family, &text)?
+        }
+        (None, bodies) => flex::generate::generate(&args.family, bodies.unwrap_or(0), args.seed)?,
+    };
     output::write(args.out.as_deref(), &flex::structure_to_toml(&structure))?;
     Ok(DECIDED)
 }

@@ -3,25 +3,25 @@
 use std::fmt::Write;
 
 /// Text and outlines.
-pub(super) const INK: &str = "#1f2933";
+pub(crate) const INK: &str = "#1f2933";
 /// Secondary text.
-pub(super) const MUTED: &str = "#52606d";
+pub(crate) const MUTED: &str = "#52606d";
 /// Axes and frames.
-pub(super) const RULE: &str = "#9aa5b1";
+pub(crate) const RULE: &str = "#9aa5b1";
 /// Contact points.
-pub(super) const CONTACT: &str = "#c1121f";
+pub(crate) const CONTACT: &str = "#c1121f";
 
 /// A point of the page, y downwards, or of the plane, y upwards.
-pub(super) type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// A document being written.
-pub(super) struct Svg {
+pub(crate) struct Svg {
     body: String,
     clips: usize,
 }
 
 /// About how wide a text is: a fair estimate for sans-serif faces.
-pub(super) fn text_width(text: &str, size: f64) -> f64 {
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let wide = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | '\'' | '|' | '(' | ')' | ' ' | 't' | 'f' | 'r' => 0.38,
         'm' | 'w' | 'M' | 'W' | '…' | '→' | '≈' | '−' => 0.9,
@@ -66,14 +66,14 @@ fn escape(text: &str) -> String {
 }
 
 impl Svg {
-    pub(super) fn new() -> Svg {
+    pub(crate) fn new() -> Svg {
         Svg {
             body: String::new(),
             clips: 0,
         }
     }
 
-    pub(super) fn finish(self, width: f64, height: f64, title: &str, about: &str) -> String {
+    pub(crate) fn finish(self, width: f64, height: f64, title: &str, about: &str) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{w}\" height=\"{h}\" \
              viewBox=\"0 0 {w} {h}\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\">\n\
@@ -97,7 +97,7 @@ impl Svg {
         clippy::too_many_arguments,
         reason = "a line of text has as many properties"
     )]
-    pub(super) fn text(
+    pub(crate) fn text(
         &mut self,
         x: f64,
         y: f64,
@@ -118,7 +118,7 @@ impl Svg {
     }
 
     /// A rectangle by its corner, width and height.
-    pub(super) fn rect(&mut self, [x, y, w, h]: [f64; 4], fill: &str, stroke: &str) {
+    pub(crate) fn rect(&mut self, [x, y, w, h]: [f64; 4], fill: &str, stroke: &str) {
         self.tag(format_args!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{fill}\" stroke=\"{stroke}\"/>",
             n(x),
@@ -128,11 +128,11 @@ impl Svg {
         ));
     }
 
-    pub(super) fn line(&mut self, a: Point, b: Point, stroke: &str, width: f64, dash: &str) {
+    pub(crate) fn line(&mut self, a: Point, b: Point, stroke: &str, width: f64, dash: &str) {
         self.polyline(&[a, b], stroke, width, dash);
     }
 
-    pub(super) fn polyline(&mut self, points: &[Point], stroke: &str, width: f64, dash: &str) {
+    pub(crate) fn polyline(&mut self, points: &[Point], stroke: &str, width: f64, dash: &str) {
         let style = format!(
             "fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{}\"",
             n(width)
@@ -149,7 +149,7 @@ impl Svg {
     }
 
     /// Closed rings as one shape, holes by the even-odd rule.
-    pub(super) fn shape(&mut self, rings: &[Vec<Point>], style: &str) {
+    pub(crate) fn shape(&mut self, rings: &[Vec<Point>], style: &str) {
         let d: Vec<String> = rings
             .iter()
             .filter(|r| r.len() > 2)
@@ -163,7 +163,7 @@ impl Svg {
         }
     }
 
-    pub(super) fn circle(&mut self, [x, y]: Point, r: f64, fill: &str, stroke: &str, width: f64) {
+    pub(crate) fn circle(&mut self, [x, y]: Point, r: f64, fill: &str, stroke: &str, width: f64) {
         self.tag(format_args!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{}\"/>",
             n(x),
@@ -174,7 +174,7 @@ impl Svg {
     }
 
     /// An arrow from a to b.
-    pub(super) fn arrow(&mut self, a: Point, b: Point, stroke: &str) {
+    pub(crate) fn arrow(&mut self, a: Point, b: Point, stroke: &str) {
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let l = dx.hypot(dy).max(1e-9);
         let (ux, uy) = (dx / l, dy / l);
@@ -188,7 +188,7 @@ impl Svg {
     }
 
     /// Opens a group that shows only what lies in a rectangle; close it with [`Svg::end`].
-    pub(super) fn clip(&mut self, rect: [f64; 4]) {
+    pub(crate) fn clip(&mut self, rect: [f64; 4]) {
         self.clips += 1;
         let id = self.clips;
         let [x, y, w, h] = rect.map(n);
@@ -198,12 +198,12 @@ impl Svg {
         ));
     }
 
-    pub(super) fn end(&mut self) {
+    pub(crate) fn end(&mut self) {
         self.tag(format_args!("</g>"));
     }
 
     /// The mark of an event of some kind.
-    pub(super) fn marker(&mut self, kind: &str, at: Point, colour: &str) {
+    pub(crate) fn marker(&mut self, kind: &str, at: Point, colour: &str) {
         let [x, y] = at;
         let white = "#ffffff";
         let poly = |points: &[Point]| -> Vec<Vec<Point>> {
@@ -285,7 +285,7 @@ fn path(points: &[Point], closed: bool) -> String {
 
 /// What of a ring lies in a rectangle [x0, y0, x1, y1] (Sutherland and Hodgman): keeps a wall of a
 /// thousand units from reaching a renderer.
-pub(super) fn clipped(ring: &[Point], [x0, y0, x1, y1]: [f64; 4]) -> Vec<Point> {
+pub(crate) fn clipped(ring: &[Point], [x0, y0, x1, y1]: [f64; 4]) -> Vec<Point> {
     let sides = [(0, x0, 1.0), (0, x1, -1.0), (1, y0, 1.0), (1, y1, -1.0)];
     let mut ring = ring.to_vec();
     for (axis, bound, sign) in sides {
