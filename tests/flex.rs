@@ -5,7 +5,7 @@
 use snapfit::flex::generate::{FAMILIES, generate};
 use snapfit::flex::{
     Body, Corners, Ending, FlexOptions, Flexed, Hold, Path, Pose, StepRules, Structure, Term, flex,
-    read_structure, structure_schema, structure_to_toml,
+    outer_bound, read_structure, structure_schema, structure_to_toml,
 };
 use snapfit::geometry::{Polygon, Vec2, interiors_intersect};
 use snapfit::number::Rat;
@@ -26,7 +26,13 @@ fn first_optimum(structure: &Structure) -> Rat {
     let mut s = structure.clone();
     s.step.most = 1;
     s.step.path = Path::Fast;
-    let flexed = flex(&s, &FlexOptions { verify: true, ..FlexOptions::default() });
+    let flexed = flex(
+        &s,
+        &FlexOptions {
+            verify: true,
+            ..FlexOptions::default()
+        },
+    );
     assert_eq!(flexed.steps[0].verified, Some(true));
     flexed.steps[0].objective.clone()
 }
@@ -49,7 +55,11 @@ fn optima_are_those_published() {
         ("jrot", 90),
         ("grid", 392),
     ];
-    let most = if common::count(100) >= 100 { cases.len() } else { 4 };
+    let most = if common::count(100) >= 100 {
+        cases.len()
+    } else {
+        4
+    };
     for (family, bodies) in &cases[..most] {
         let wanted = std::fs::read_to_string(folder.join(format!("pf_{family}{bodies}_y.exact")));
         let structure = generate(family, *bodies, 1).unwrap();
@@ -217,7 +227,13 @@ fn overlaps(s: &Structure, flexed: &Flexed, samples: i64) -> usize {
 
 #[test]
 fn safe_paths_never_collide_and_lose_little() {
-    let families = [("jit", 6), ("wall", 7), ("chain", 4), ("can", 10), ("ring", 8)];
+    let families = [
+        ("jit", 6),
+        ("wall", 7),
+        ("chain", 4),
+        ("can", 10),
+        ("ring", 8),
+    ];
     for (family, bodies) in families {
         let mut s = generate(family, bodies, 2).unwrap();
         let fast = flex(&s, &FlexOptions::default());
@@ -227,10 +243,40 @@ fn safe_paths_never_collide_and_lose_little() {
         assert!(safe.steps.iter().all(|s| s.proof.is_some()), "{family}");
         assert!(safe.violation.square.is_zero(), "{family}");
         let most = &fast.displacement * &r(9, 10);
-        assert!(safe.displacement >= most, "{family}: {} {}", safe.displacement, fast.displacement);
+        assert!(
+            safe.displacement >= most,
+            "{family}: {} {}",
+            safe.displacement,
+            fast.displacement
+        );
         let samples = 4 + common::count(1000) as i64 / 10;
         assert_eq!(overlaps(&s, &safe, samples), 0, "{family}");
     }
+}
+
+/// No safe path may pass the outer bound, and for tight joints the two are near each other. The
+/// block under a ceiling has its bound by hand: a joint on every side, 1/10 of room.
+#[test]
+fn outer_bounds_hold_what_safe_paths_reach() {
+    for (family, bodies) in [("grid", 6), ("jit", 6), ("jrot", 4), ("chain", 4)] {
+        let mut s = generate(family, bodies, 2).unwrap();
+        s.step.path = Path::Safe;
+        let inner = flex(&s, &FlexOptions::default()).displacement;
+        let outer = outer_bound(&s, None).unwrap();
+        assert!(outer.verified, "{family}");
+        assert!(outer.value >= inner, "{family}: {} < {inner}", outer.value);
+        assert!(
+            outer.value <= &inner * &r(5, 4),
+            "{family}: {} {inner}",
+            outer.value
+        );
+    }
+    let bodies = vec![
+        rectangle("floor", [-40, -10, 40, 0], Hold::Fixed),
+        rectangle("block", [0, 0, 10, 10], Hold::Free),
+    ];
+    let s = plain(bodies, vec![moves(1, 1, 0)]);
+    assert!(outer_bound(&s, None).is_err(), "nothing holds it");
 }
 
 /// Two squares corner to corner: an averaged half-plane forbids what one of the edges allows, and
@@ -252,7 +298,10 @@ fn branching_finds_the_best_side() {
     let average = flex(&s, &FlexOptions::default());
     let branch = flex(
         &s,
-        &FlexOptions { corners: Corners::Branch, ..FlexOptions::default() },
+        &FlexOptions {
+            corners: Corners::Branch,
+            ..FlexOptions::default()
+        },
     );
     assert_eq!(average.steps[0].facing, 1);
     // Past one of its edges alone the square may go on without end: to the left or downwards.
@@ -311,22 +360,50 @@ fn what_is_wrong_is_said_with_its_code() {
     assert!(read_structure("x.toml", PAIR.as_bytes(), &[]).is_ok());
     let cases: &[(&str, &str, &str)] = &[
         ("[structure]", "[structur]", "missing-key"),
-        ("epsilon = \"3/5\"", "epsilon = \"0\"", "epsilon-not-positive"),
+        (
+            "epsilon = \"3/5\"",
+            "epsilon = \"0\"",
+            "epsilon-not-positive",
+        ),
         ("epsilon = \"3/5\"", "epsilon = \"1/0\"", "bad-denominator"),
-        ("epsilon = \"3/5\"", "epsilon = \"3/5\"\nnearest = -1", "wrong-type"),
+        (
+            "epsilon = \"3/5\"",
+            "epsilon = \"3/5\"\nnearest = -1",
+            "wrong-type",
+        ),
         ("name = \"b\"", "name = \"a\"", "duplicate-name"),
         ("\"1.5\"", "\"0.5\"", "bodies-penetrate"),
-        ("fixed = true", "fixed = true\npin = [0, 0]", "fixed-and-pinned"),
+        (
+            "fixed = true",
+            "fixed = true\npin = [0, 0]",
+            "fixed-and-pinned",
+        ),
         ("fixed = true", "fixed = 1", "wrong-type"),
         ("fixed = true", "fixd = true", "unknown-key"),
         ("body = \"b\"", "body = \"c\"", "unknown-body"),
         ("body = \"b\"", "body = \"b\", vertex = 4", "unknown-vertex"),
         ("dy = \"-1\"", "dy = \"0\"", "empty-term"),
         ("dy = \"-1\"", "radial_from = [0, 0]", "mixed-term"),
-        ("[objective]", "[step]\nviolation = \"-1\"\n[objective]", "step-not-positive"),
-        ("[objective]", "[step]\npath = \"quick\"\n[objective]", "unknown-path"),
-        ("[objective]", "[step]\nmost = 0\n[objective]", "step-not-positive"),
-        ("[objective]", "[[joint]]\nbodies = [[\"a\", \"a\"]]\n[objective]", "joint-with-itself"),
+        (
+            "[objective]",
+            "[step]\nviolation = \"-1\"\n[objective]",
+            "step-not-positive",
+        ),
+        (
+            "[objective]",
+            "[step]\npath = \"quick\"\n[objective]",
+            "unknown-path",
+        ),
+        (
+            "[objective]",
+            "[step]\nmost = 0\n[objective]",
+            "step-not-positive",
+        ),
+        (
+            "[objective]",
+            "[[joint]]\nbodies = [[\"a\", \"a\"]]\n[objective]",
+            "joint-with-itself",
+        ),
         (
             "[objective]",
             "[[joint]]\nbodies = [[\"a\", \"b\"]]\nfirst = [[4, 0]]\n[objective]",
@@ -377,20 +454,41 @@ fn damaged_files_never_panic() {
 fn the_schema_has_the_keys_of_the_reader() {
     let schema = serde_json::to_value(structure_schema()).unwrap();
     let keys = |name: &str| -> BTreeSet<String> {
-        let table = if name.is_empty() { &schema } else { &schema["$defs"][name] };
-        table["properties"].as_object().unwrap().keys().cloned().collect()
+        let table = if name.is_empty() {
+            &schema
+        } else {
+            &schema["$defs"][name]
+        };
+        table["properties"]
+            .as_object()
+            .unwrap()
+            .keys()
+            .cloned()
+            .collect()
     };
     let view = "[[view]]\nqqqqqqqqqq = 1\n[objective]";
     let joint = "[[joint]]\nqqqqqqqqqq = 1\n[objective]";
     for (name, from, to) in [
         ("", "[structure]", "qqqqqqqqqq = 1\n[structure]"),
-        ("StructureSection", "[structure]", "[structure]\nqqqqqqqqqq = 1"),
+        (
+            "StructureSection",
+            "[structure]",
+            "[structure]\nqqqqqqqqqq = 1",
+        ),
         ("BodyTable", "fixed = true", "qqqqqqqqqq = 1"),
         ("JointTable", "[objective]", joint),
         ("ViewTable", "[objective]", view),
-        ("ObjectiveSection", "[objective]", "[objective]\nqqqqqqqqqq = 1"),
+        (
+            "ObjectiveSection",
+            "[objective]",
+            "[objective]\nqqqqqqqqqq = 1",
+        ),
         ("TermTable", "body = \"b\"", "qqqqqqqqqq = \"b\""),
-        ("StepSection", "[objective]", "[step]\nqqqqqqqqqq = 1\n[objective]"),
+        (
+            "StepSection",
+            "[objective]",
+            "[step]\nqqqqqqqqqq = 1\n[objective]",
+        ),
     ] {
         let text = PAIR.replacen(from, to, 1);
         let errors = read_structure("x.toml", text.as_bytes(), &[]).unwrap_err();

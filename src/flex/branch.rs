@@ -58,9 +58,7 @@ pub(crate) fn solve(
         rows.iter().cloned().chain(more).collect()
     };
     let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses);
-    let solved = |taken: &[Option<u8>]| {
-        run.program(&all(taken), poses)
-    };
+    let solved = |taken: &[Option<u8>]| run.program(&all(taken), poses);
     let mut programs = 1;
     let root = vec![None; facing.len()];
     let (model, outcome) = solved(&root);

@@ -19,6 +19,7 @@
 //! Whether a configuration respects its constraints is decided by exact integers.
 
 pub mod apps;
+mod bound;
 mod branch;
 pub mod generate;
 mod model;
@@ -35,6 +36,7 @@ mod step;
 mod types;
 mod write;
 
+pub use bound::{OuterBound, outer_bound};
 pub use motion::{Contact as FirstContact, ProofSize};
 pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};

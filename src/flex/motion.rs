@@ -157,15 +157,15 @@ impl<'a> Motion<'a> {
         };
         // |ρ″| of ρ(s) = R₁(s)ᵀ(Δ(s) + R₂(s)r): angles have |φ′| ≤ 2|w|, |φ″| ≤ 2|w|².
         let (a1, a12) = (2.0 * w1.abs(), 2.0 * (w1.abs() + w2.abs()));
-        let bend = (a1 * a1 + w1 * w1 * 2.0) * apart.0
-            + 2.0 * a1 * apart.1
-            + (a12 * a12 * 1.5) * s2.reach;
+        let bend =
+            (a1 * a1 + w1 * w1 * 2.0) * apart.0 + 2.0 * a1 * apart.1 + (a12 * a12 * 1.5) * s2.reach;
         let size_of_all = apart.0 + s1.reach + s2.reach + p1.centre[0].abs() + p1.centre[1].abs();
         let stray = bend / 8.0 * (1.0 + 1e-6) + 1e-9 * (1.0 + size_of_all);
         let reach = |ring: &[[f64; 2]], i: usize| {
-            ring.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
-                (l.min(p[i]), h.max(p[i]))
-            })
+            ring.iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
+                    (l.min(p[i]), h.max(p[i]))
+                })
         };
         let (bx, by) = (reach(&s1.local, 0), reach(&s1.local, 1));
         for v in 0..s2.len() {
@@ -174,12 +174,7 @@ impl<'a> Motion<'a> {
             }
             let start = local(0.0, 0.0, 0.0, &s2.local[v]);
             let end = local(w1, w2, 1.0, &s2.local[v]);
-            let span = |i: usize| {
-                (
-                    start[i].min(end[i]) - stray,
-                    start[i].max(end[i]) + stray,
-                )
-            };
+            let span = |i: usize| (start[i].min(end[i]) - stray, start[i].max(end[i]) + stray);
             let (x, y) = (span(0), span(1));
             let apart = |a: (f64, f64), b: (f64, f64)| a.1 < b.0 || b.1 < a.0;
             // NaN compares false: what is not surely apart is looked at.

@@ -27,7 +27,11 @@ fn write(out: &mut String, model: &Model) -> std::fmt::Result {
             writeln!(out, "    {}  obj  {}", column.name, column.cost)?;
         }
         for (row, value) in &column.entries {
-            writeln!(out, "    {}  {}  {value}", column.name, model.rows[*row as usize].name)?;
+            writeln!(
+                out,
+                "    {}  {}  {value}",
+                column.name, model.rows[*row as usize].name
+            )?;
         }
     }
     writeln!(out, "RHS")?;

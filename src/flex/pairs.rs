@@ -467,7 +467,9 @@ pub(crate) fn too_deep(scaffold: &Scaffold, placed: &[Placed], allowed: f64) -> 
     let boxes: Vec<Box2> = placed.iter().map(box_of).collect();
     meeting(&boxes, -allowed).into_iter().any(|(a, b)| {
         let fixed = scaffold.forms[a] == Form::Fixed && scaffold.forms[b] == Form::Fixed;
-        !fixed && (deepest(scaffold, placed, a, b) > allowed || deepest(scaffold, placed, b, a) > allowed)
+        !fixed
+            && (deepest(scaffold, placed, a, b) > allowed
+                || deepest(scaffold, placed, b, a) > allowed)
     })
 }
 

@@ -1,5 +1,6 @@
 //! Results as JSON, in the words of the contract.
 
+use super::bound::OuterBound;
 use super::step::{Ending, Flexed};
 use super::types::Structure;
 use crate::report::Num;
@@ -39,6 +40,9 @@ pub struct FlexDocument {
     pub bits: Vec<u64>,
     /// What proves the steps' optima.
     pub certificate: Value,
+    /// Where asked for: a proven outer bound of the flex.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bound: Option<BoundDocument>,
 }
 
 /// One step.
@@ -65,6 +69,25 @@ pub struct StepDocument {
     /// On a safe path: what was proven to be free of collision throughout the step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proof: Option<ProofDocument>,
+}
+
+/// An outer bound: no motion without collision moves the objective farther.
+#[derive(Clone, Debug, Serialize)]
+pub struct BoundDocument {
+    /// The bound; null where there is none.
+    pub outer: Option<Num>,
+    /// Over the displacement that this run reached, which a safe path attains.
+    pub ratio: Option<f64>,
+    /// The exact optimum of the relaxed program.
+    pub relaxed: Option<Num>,
+    /// What its linearised objective may lose.
+    pub loss: Option<Num>,
+    /// Contacts that gave no row.
+    pub dropped: Option<usize>,
+    /// Whether the relaxed program's certificate passed the verifier.
+    pub verified: bool,
+    /// Why there is no bound.
+    pub reason: Option<String>,
 }
 
 /// The size of a proof.
@@ -162,7 +185,35 @@ impl FlexDocument {
                 "verified": all,
                 "steps": proofs,
             }),
+            bound: None,
         }
+    }
+
+    /// The outer bound beside what this run reached.
+    pub fn bounded(&self, bound: &Result<OuterBound, String>) -> BoundDocument {
+        let mut out = BoundDocument {
+            outer: None,
+            ratio: None,
+            relaxed: None,
+            loss: None,
+            dropped: None,
+            verified: false,
+            reason: None,
+        };
+        match bound {
+            Ok(b) => {
+                let outer = Num::of_rat(&b.value);
+                let inner = self.displacement.value.filter(|v| *v > 0.0);
+                out.ratio = outer.value.zip(inner).map(|(o, i)| o / i);
+                out.outer = Some(outer);
+                out.relaxed = Some(Num::of_rat(&b.relaxed));
+                out.loss = Some(Num::of_rat(&b.loss));
+                out.dropped = Some(b.dropped);
+                out.verified = b.verified;
+            }
+            Err(why) => out.reason = Some(why.clone()),
+        }
+        out
     }
 
     /// Whether the question was decided.

@@ -36,12 +36,7 @@ pub(crate) struct SafeStep {
 impl Run<'_> {
     /// One safe step from a configuration without violations. Bodies that turn out to meet
     /// without being joined are added to `extra`, to be kept apart from now on.
-    pub(crate) fn safe_step(
-        &mut self,
-        poses: &[Pose],
-        placed: &[Placed],
-        moved: bool,
-    ) -> SafeStep {
+    pub(crate) fn safe_step(&mut self, poses: &[Pose], placed: &[Placed], moved: bool) -> SafeStep {
         let mut selection = self.selection(placed, moved);
         let (mut pairs, mut rows) = self.rows(&selection, placed);
         let mut held = vec![0.0f64; rows.len()];

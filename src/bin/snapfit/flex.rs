@@ -31,6 +31,9 @@ pub(crate) struct FlexArgs {
     /// Write every linear program into a directory, as step0.mps and so on
     #[arg(long, value_name = "DIR")]
     programs: Option<PathBuf>,
+    /// Bound the flex from outside too: what no motion without collision can exceed
+    #[arg(long)]
+    bound: bool,
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
@@ -162,8 +165,12 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         progress: Some(&tell),
     };
     let flexed = flex::flex(&structure, &options);
+    let bound = args
+        .bound
+        .then(|| flex::outer_bound(&structure, args.time_limit));
     drop(spinner);
-    let document = FlexDocument::new(&structure, &flexed, word);
+    let mut document = FlexDocument::new(&structure, &flexed, word);
+    document.bound = bound.map(|b| document.bounded(&b));
     let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
     output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
     Ok(if FlexDocument::decided(flexed.ending) {
