@@ -5,8 +5,8 @@
 
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{
-    Certificate, Method, Model, Options, Outcome, Place, Range, Status, Vector, read_model, report,
-    solve,
+    Accuracy, Certificate, Method, Model, Options, Outcome, Place, Range, Status, Vector,
+    read_model, report, solve,
 };
 use snapfit::number::{Int, Rat};
 
@@ -307,6 +307,156 @@ fn false_claims_are_rejected() {
     }
 }
 
+/// A band of random integers whose determinants are long: its certificate is a basis.
+fn banded(r: &mut Random, size: usize) -> Model {
+    let mut model = Model::new("band");
+    for j in 0..size {
+        let cost = rat(r.below(4) as i64);
+        model.add_column(&format!("x{j}"), cost, Range::free());
+    }
+    for i in 0..size {
+        let price = rat(1 + r.below(1000) as i64);
+        let lower = rat(r.below(1000) as i64 - 300);
+        model.add_row(&format!("r{i}"), Range::at_least(lower));
+        for j in i.saturating_sub(2)..(i + 3).min(size) {
+            let most = if i == j { 4_000_000 } else { 1_000_000 };
+            let v = 1 + r.below(most) as i64;
+            let v = rat(if i == j { v + 4_000_000 } else { v });
+            // Costs that positive prices nearly explain: there is an optimum, at a vertex.
+            model.columns[j].cost = &model.columns[j].cost + &(&v * &price);
+            model.set(i, j, v);
+        }
+    }
+    model
+}
+
+/// Every change to a basis certificate, to the objective beside it or to its denominators is
+/// rejected, or leaves it the certificate of what is still true.
+#[test]
+fn mutated_bases_are_rejected() {
+    let mut r = Random(0x0bad_5eed_0bad_5eed);
+    let model = banded(&mut r, 350);
+    let out = solved(&model, Method::Warm);
+    let honest = Claim::of(&out).expect("a certificate");
+    let Certificate::Basis { columns, rows, .. } = &honest.certificate else {
+        panic!("the vertex is long enough for the short form");
+    };
+    let (n, m) = (columns.len(), rows.len());
+    let places = [Place::Basic, Place::Lower, Place::Upper, Place::Zero];
+    let mut rejected = 0;
+    for _ in 0..runs(1e4).max(20) {
+        let mut claim = honest.clone();
+        let Certificate::Basis {
+            columns,
+            rows,
+            order,
+            primal_denominator,
+            dual_denominator,
+        } = &mut claim.certificate
+        else {
+            unreachable!()
+        };
+        let k = r.below(order.len() as u64) as usize;
+        let l = r.below(order.len() as u64) as usize;
+        let way = r.below(9);
+        match way {
+            0 => columns[r.below(n as u64) as usize] = places[1 + r.below(3) as usize],
+            1 => rows[r.below(m as u64) as usize] = places[2 * r.below(2) as usize],
+            2 => order[k] = order[(k + 1) % order.len()],
+            3 => order[k].0 = (order[k].0 + 1 + r.below(m as u64 - 1) as u32) % (m as u32 + 5),
+            4 => drop(order.remove(k)),
+            5 => *primal_denominator = &*primal_denominator + &Int::from(1 + r.small().abs()),
+            6 => *dual_denominator = -&*dual_denominator,
+            7 => *dual_denominator = &*dual_denominator + &Int::from(1 + r.small().abs()),
+            _ => {
+                let objective = claim.objective.clone().expect("an objective");
+                claim.objective = Some(&objective + &Rat::frac(1 + r.below(9) as i64, 1 << 50));
+                order.swap(k, l);
+            }
+        }
+        let verdict = verify(&model, &claim);
+        assert!(verdict.is_err(), "a basis mutated in way {way} passes");
+        rejected += 1;
+    }
+    assert!(rejected >= 20);
+}
+
+/// The same bytes, run for run.
+#[test]
+fn determinism() {
+    let mut r = Random(0xfeed_f00d);
+    let models = [
+        banded(&mut r, 60),
+        random_model(&mut r),
+        random_model(&mut r),
+    ];
+    for model in &models {
+        for accuracy in [Accuracy::Exact, Accuracy::Bounds] {
+            let text = || {
+                let options = Options {
+                    accuracy,
+                    values: true,
+                    ..Options::default()
+                };
+                report::to_json(model, "m", &solve(model, &options)).to_string()
+            };
+            assert_eq!(text(), text());
+        }
+    }
+}
+
+/// `Bounds` gives an enclosure that holds the optimum, is narrow, and is proven; a time limit
+/// gives one that holds it and is proven.
+#[test]
+fn bounds_enclose() {
+    let mut r = Random(0x600d_600d);
+    let (mut narrow, mut ended) = (0, 0);
+    for k in 0..runs(1e4) {
+        let model = if k % 16 == 0 {
+            banded(&mut r, 12)
+        } else {
+            random_model(&mut r)
+        };
+        let exact = solved(&model, Method::Warm);
+        for (accuracy, limit) in [
+            (Accuracy::Bounds, None),
+            (Accuracy::Exact, Some(std::time::Duration::ZERO)),
+        ] {
+            let options = Options {
+                accuracy,
+                time_limit: limit,
+                ..Options::default()
+            };
+            let out = solve(&model, &options);
+            if limit.is_none() {
+                assert_eq!(out.status, exact.status);
+            }
+            if let Some(claim) = Claim::of(&out) {
+                assert_eq!(verify(&model, &claim), Ok(()), "{model:?} {out:?}");
+            }
+            let (low, high) = &out.enclosure;
+            let Some(optimum) = &exact.objective else {
+                // Without an optimum there is no enclosure of one from both sides.
+                assert!(low.is_none() || high.is_none());
+                continue;
+            };
+            assert!(low.as_ref().is_none_or(|l| l <= optimum), "{out:?}");
+            assert!(high.as_ref().is_none_or(|h| h >= optimum), "{out:?}");
+            if limit.is_none() {
+                let (Some(low), Some(high)) = (low, high) else {
+                    panic!("{out:?}");
+                };
+                let size = optimum.abs().nearest_f64().expect("a size").max(1.0);
+                assert!((high - low).nearest_f64().expect("a width") <= 1.001e-9 * size);
+                narrow += u64::from(low < high);
+            } else {
+                ended += u64::from(low.is_some() || high.is_some());
+            }
+        }
+    }
+    assert!(runs(1e4) < 50 || ended > 10, "{narrow} {ended}");
+}
+
 fn vector(v: &[i64]) -> Vector {
     Vector {
         denominator: Int::one(),
@@ -358,6 +508,45 @@ fn cycling_examples_end() {
          1/3 x1 + x2 - 1/3 x3 - 2 x4 <= 0\n x1 + x2 <= 1\n x3 + x4 <= 1\nend",
         "-1",
     );
+}
+
+/// Hoffman's example of 1953: five pairs of columns, each the one before turned by 72° (in skew
+/// coordinates), around a vertex where nothing can move. Largest coefficients lead round and
+/// round. The numbers are irrational; nine digits keep every choice of pivot.
+#[test]
+fn hoffmans_circle() {
+    let theta = 0.4 * std::f64::consts::PI;
+    let (c, w) = (theta.cos(), 2.0);
+    assert!(w > (1.0 - c) / (1.0 - 2.0 * c));
+    let near = |v: f64| Rat::frac((v * 1e9).round() as i64, 1_000_000_000);
+    let turn = [[c, -w * c], [theta.tan() * theta.sin() / w, c]];
+    let mut pair = [[1.0, 0.0], [0.0, 1.0]];
+    let first = [-(1.0 - c) / c, w];
+    let mut cost = [0.0, 0.0];
+    let mut model = Model::new("circle");
+    model.add_column("x1", Rat::zero(), Range::at_least(Rat::zero()));
+    model.add_row("one", Range::fixed(Rat::one()));
+    model.add_row("p", Range::fixed(Rat::zero()));
+    model.add_row("q", Range::fixed(Rat::zero()));
+    model.set(0, 0, Rat::one());
+    for k in 0..5 {
+        for side in 0..2 {
+            let name = format!("x{}", 2 * k + side + 2);
+            let j = model.add_column(&name, near(cost[side]), Range::at_least(Rat::zero()));
+            model.set(1, j, near(pair[0][side]));
+            model.set(2, j, near(pair[1][side]));
+        }
+        let by = |row: [f64; 2], m: [[f64; 2]; 2]| {
+            [0, 1].map(|s: usize| row[0] * m[0][s] + row[1] * m[1][s])
+        };
+        let more = by(first, pair);
+        cost = [cost[0] + more[0], cost[1] + more[1]];
+        pair = [by(turn[0], pair), by(turn[1], pair)];
+    }
+    assert!(cost.iter().all(|v| v.abs() < 1e-12), "the circle closes");
+    let [a, b] = [Method::Exact, Method::Warm].map(|m| solved(&model, m));
+    assert_eq!((a.status, &a.objective), (b.status, &b.objective));
+    assert_eq!(a.objective, Some(Rat::zero()));
 }
 
 /// Klee & Minty's cube: exponentially many vertices, one right one.
@@ -481,6 +670,21 @@ fn mps_bounds_and_ranges() {
     assert_eq!(m.columns[3].range, Range::fixed(Rat::frac(1, 3)));
     assert_eq!(m.columns[1].entries[1].1, rat(2));
     assert_eq!(m.ignored_rhs, Some(rat(7)));
+}
+
+/// 10³⁰ as a bound is the format's word for none; next to it lie numbers.
+#[test]
+fn mps_infinity() {
+    let text = "NAME\nROWS\n N obj\n L r\nCOLUMNS\n x obj 1 r 1\n y obj 1 r 1\n z obj 1 r 1\n\
+        RHS\n rhs r 1e30\nBOUNDS\n LO b x -1e30\n UP b x 1.0e+30\n LO b y 1e30\n\
+        \x20UP b y 1000000000000000000000000000001\n MI b z\n UP b z Inf\nENDATA\n";
+    let m = read_model("t.mps", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"));
+    let big = Rat::from(Int::from(10i64).pow(30));
+    assert_eq!(m.columns[0].range, Range::free());
+    assert_eq!(m.columns[1].range.lower, Some(big.clone()));
+    assert_eq!(m.columns[1].range.upper, Some(&big + &Rat::one()));
+    assert_eq!(m.columns[2].range, Range::free());
+    assert_eq!(m.rows[0].range.upper, Some(big));
 }
 
 /// Published exact optima; the instances that take long are left to the table example.

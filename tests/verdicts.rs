@@ -7,7 +7,7 @@ mod common;
 mod world;
 
 use common::count;
-use snapfit::analysis::{Ask, classify, forces};
+use snapfit::analysis::{Ask, Wish, classify, forces};
 use snapfit::number::Rat;
 use snapfit::scene::{Classify, Scene};
 use std::collections::BTreeMap;
@@ -47,11 +47,14 @@ fn every_design_is_decided() {
             critical: true,
         };
         let d = classify(&s, &ask).unwrap();
-        let f = forces(&s, 6, &Ask::default()).unwrap();
+        let f = forces(&s, &Wish::default(), &Ask::default()).unwrap();
         assert_eq!(f.pawls.len(), s.pawls.len());
         let took = begin.elapsed();
         if took > Duration::from_secs(4) || d.undecided() {
-            eprintln!("seed {seed}: {took:?} {:?} {:?}", d.class, d.undecided_width);
+            eprintln!(
+                "seed {seed}: {took:?} {:?} {:?}",
+                d.class, d.undecided_width
+            );
         }
         open += usize::from(d.undecided());
         longest = longest.max(took);

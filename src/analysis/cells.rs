@@ -23,6 +23,7 @@ use super::escape::{Ground, Start};
 use crate::contact::{PawlShape, Ring};
 use crate::geometry::Vec2;
 use crate::number::{Interval, Rat};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 /// What is in the model of a proof.
@@ -104,7 +105,13 @@ pub(super) struct Field {
     rings: Vec<Vec<Side>>,
     root: Option<Vec<Side>>,
     pawls: Vec<Body>,
+    /// Cells looked at so far, times the corners in view.
+    spent: Cell<u64>,
 }
+
+/// How much a cover may cost before the rest is left undecided; the paper's Fig. 5, extended,
+/// takes a few hundredths of it.
+const WORK: u64 = 2_000_000_000;
 
 struct Body {
     sides: Vec<Side>,
@@ -127,6 +134,8 @@ pub(super) struct Grain {
     pub(super) spread: f64,
     /// When to give up.
     pub(super) until: f64,
+    /// When the time for the proof is up.
+    pub(super) deadline: Option<std::time::Instant>,
 }
 
 impl Field {
@@ -171,6 +180,7 @@ impl Field {
                 .enumerate()
                 .map(|(i, s)| body(i, s))
                 .collect(),
+            spent: Cell::new(0),
         }
     }
 
@@ -223,6 +233,13 @@ impl Field {
         for slab in Slabs::new(grain) {
             if slab.lo >= root {
                 return true;
+            }
+            if self.spent.get() > WORK
+                || grain
+                    .deadline
+                    .is_some_and(|d| std::time::Instant::now() >= d)
+            {
+                return false;
             }
             let mut view = View {
                 field: self,
@@ -472,6 +489,9 @@ impl View<'_> {
     }
 
     fn look(&self, cell: i64) -> Known {
+        let seen: usize = self.near.iter().flatten().filter(|n| **n).count();
+        let cost = (seen + 1) * self.body.sides.len();
+        self.field.spent.set(self.field.spent.get() + cost as u64);
         let turn = self.grid.turn(cell);
         let stop = self.stop(cell);
         let mut out = Known {

@@ -93,7 +93,7 @@ pub struct Relative {
 pub struct Ask {
     /// When to give up.
     pub deadline: Option<Instant>,
-    /// Compute critical coefficients of friction.
+    /// Compute critical coefficients of friction, and the force at which a direction lets go.
     pub critical: bool,
 }
 
@@ -213,10 +213,12 @@ pub fn direction(
     }
     // Having run its length, the motion is the frictionless one: friction changes no path.
     let limit = scene.classify.as_ref().and_then(|c| c.force_limit.as_ref());
-    if let Some(limit) = limit {
-        let zero = Rat::zero();
-        let mu = scene.friction.as_ref().unwrap_or(&zero);
+    let zero = Rat::zero();
+    let mu = scene.friction.as_ref().unwrap_or(&zero);
+    if critical || limit.is_some() {
         out.peak = highest(scene, &slid, mu, 40);
+    }
+    if let Some(limit) = limit {
         let mut goal = 40;
         while let Some((p, _)) = &out.peak {
             match p.peak.reaches(limit) {

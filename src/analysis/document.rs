@@ -1,22 +1,24 @@
-//! The results of `classify` and `forces` as the contract writes them.
+//! The result of `classify` as the contract writes it.
 
+use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
-use super::escape::Ground;
-use super::peak::{Instant, Peak, Peaked, force, higher, torque};
-use super::stretch::stretches;
-use super::total::{Total, total};
+use super::escape::{Ground, lasting};
+use super::peak::Peak;
+use super::total::{Arc, Flip, Sample, Total, total};
 use crate::contact::{Contact, ContactKind};
 use crate::geometry::Vec2;
-use crate::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use crate::motion::{OutcomeKind, PlanError, Trajectory};
 use crate::number::Rat;
 use crate::report::Num;
 use crate::report::json::ContactDocument;
+use crate::report::words;
 use crate::scene::{Motion, Scene};
 use crate::slice::Time;
+use schemars::{JsonSchema, Schema, generate::SchemaSettings};
 use serde::Serialize;
 
 /// The result of `classify`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ClassifyDocument {
     /// `snapfit.classify/1`.
     pub schema: &'static str,
@@ -36,6 +38,9 @@ pub struct ClassifyDocument {
     pub critical_friction: Option<Num>,
     /// The infimum of the μ at which the plan itself sticks.
     pub critical_friction_forward: Option<Num>,
+    /// The force limit at which the family lets go: below it a force holds every direction that
+    /// nothing else blocks. Null where all are blocked anyway or no pawl has a stiffness.
+    pub critical_force: Option<Bound>,
     /// What the verdict rests on.
     pub assumed: Vec<&'static str>,
     /// What was left out of the model, because it was not needed or not given.
@@ -44,6 +49,10 @@ pub struct ClassifyDocument {
     pub directions: Vec<DirectionDocument>,
     /// Arcs that cover the circle, each proven at least as firmly blocked as it says.
     pub cover: Vec<ArcDocument>,
+    /// Where the exact verdicts of single directions flip.
+    pub flips: Vec<FlipDocument>,
+    /// The single directions of the circle that were decided, counter-clockwise.
+    pub samples: Vec<SampleDocument>,
     /// A direction that gets out, where the circle was asked and one was found.
     pub escape: Option<[Num; 2]>,
     /// Radians of directions not proven at least as firmly blocked as the class.
@@ -51,7 +60,7 @@ pub struct ClassifyDocument {
 }
 
 /// One direction of the family.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct DirectionDocument {
     /// The root's velocity.
     pub velocity: [Num; 2],
@@ -70,7 +79,7 @@ pub struct DirectionDocument {
 }
 
 /// How a motion ended.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct StopDocument {
     /// As in a result of `simulate`.
     pub kind: &'static str,
@@ -85,7 +94,7 @@ pub struct StopDocument {
 }
 
 /// An arc of directions, counter-clockwise between two unit vectors.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ArcDocument {
     /// Begin, exactly.
     pub from: [String; 2],
@@ -93,41 +102,52 @@ pub struct ArcDocument {
     pub to: [String; 2],
     /// What is proven; `undecided` where nothing is.
     pub verdict: &'static str,
+    /// What the proof rests on, and how the motion in the arc's middle ends.
+    pub reason: String,
 }
 
-/// A supremum.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum Bound {
-    /// Past every bound.
-    Unbounded(Unbounded),
-    /// Between two exact rationals.
-    Within {
-        /// At least this.
-        lo: String,
-        /// At most this.
-        hi: String,
-    },
+/// A change of the verdict round the circle.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct FlipDocument {
+    /// Before it.
+    pub from: [String; 2],
+    /// After it, at most 2⁻⁶⁰ of tan(φ/2) away.
+    pub to: [String; 2],
+    /// The verdict before it.
+    pub before: &'static str,
+    /// The verdict after it.
+    pub after: &'static str,
+    /// The direction in between that is written with the fewest digits: the critical one, most
+    /// likely; null where none is short.
+    pub critical: Option<[String; 2]>,
+    /// Its own verdict.
+    pub at: Option<&'static str>,
 }
 
-/// The word for it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Unbounded {
-    /// Past every bound.
-    #[serde(rename = "unbounded")]
-    Unbounded,
+/// One direction of the circle.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct SampleDocument {
+    /// A unit vector.
+    pub direction: [String; 2],
+    /// Its exact verdict.
+    pub verdict: &'static str,
 }
 
-impl Bound {
-    fn of(p: &Peak) -> Bound {
-        match p {
-            Peak::Unbounded => Bound::Unbounded(Unbounded::Unbounded),
-            Peak::Within(lo, hi) => Bound::Within {
-                lo: lo.to_string(),
-                hi: hi.to_string(),
-            },
-        }
-    }
+/// The JSON Schema of `classify`'s result.
+pub fn classify_schema() -> Schema {
+    schema_of::<ClassifyDocument>("snapfit.classify/1")
+}
+
+/// The JSON Schema of `forces`' result.
+pub fn forces_schema() -> Schema {
+    schema_of::<super::forces::ForcesDocument>("snapfit.forces/1")
+}
+
+fn schema_of<T: JsonSchema>(id: &str) -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    let mut schema = settings.into_generator().into_root_schema_for::<T>();
+    schema.insert("$id".to_owned(), id.into());
+    schema
 }
 
 fn pair(v: &Vec2) -> [Num; 2] {
@@ -138,7 +158,7 @@ fn instant(t: &Time) -> Num {
     t.as_rat().map_or_else(|| Num::of(t.exact()), Num::of_rat)
 }
 
-fn contact(scene: &Scene, contact: &Contact) -> ContactDocument {
+pub(super) fn contact(scene: &Scene, contact: &Contact) -> ContactDocument {
     match *contact {
         Contact::Limit(limit) => ContactDocument::Limit { limit },
         Contact::Obstacle {
@@ -184,6 +204,10 @@ fn stop(scene: &Scene, run: &Trajectory) -> StopDocument {
 }
 
 impl ClassifyDocument {
+    /// Whether a direction gets out, or would but for the force limit.
+    pub fn gets_out(&self) -> bool {
+        self.escape.is_some() || self.directions.iter().any(|d| d.plan.is_some())
+    }
     /// Whether a limit kept the question open: of the family, or of part of the circle.
     pub fn undecided(&self) -> bool {
         let open = self.class.is_none()
@@ -200,13 +224,49 @@ impl ClassifyDocument {
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn classify(scene: &Scene, ask: &Ask) -> Result<ClassifyDocument, PlanError> {
+    Ok(classify_with_way(scene, ask)?.0)
+}
+
+/// As [`classify`], with the motion that decides: a velocity and a duration from the end of the
+/// plan. It is the escape of the circle if there is one, else the family's weakest direction.
+///
+/// # Errors
+/// [`PlanError`] where the plan asks for what cannot be.
+pub fn classify_with_way(
+    scene: &Scene,
+    ask: &Ask,
+) -> Result<(ClassifyDocument, Option<(Vec2, Rat)>), PlanError> {
     let family = relative(scene, ask)?;
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
         let ground = Ground::new(scene, ask.deadline);
         total(&ground, start, family.class)
     });
-    Ok(written(scene, &family, circle.as_ref()))
+    let weakest = family.directions.iter().min_by_key(|d| d.verdict);
+    let relative_way = weakest.map(|d| (d.velocity.clone(), run_time(d)));
+    let way = match circle.as_ref() {
+        Some(t) if family.class != Some(Verdict::None) => {
+            let way = t.escape.as_ref().map(|w| {
+                let lasts = lasting(w, &t.distance.square()).0;
+                (w.clone(), lasts)
+            });
+            way.or(relative_way)
+        }
+        _ => relative_way,
+    };
+    Ok((written(scene, &family, circle.as_ref()), way))
+}
+
+/// A rational duration in which a direction's motion has run its course.
+fn run_time(d: &Direction) -> Rat {
+    let end = &d.run.outcome.time;
+    match end.as_rat() {
+        // A little longer, where it ends for another reason than its length.
+        Some(t) if d.run.outcome.kind == OutcomeKind::Completed => t.clone(),
+        Some(t) => t + &Rat::one(),
+        None if d.run.outcome.kind == OutcomeKind::Completed => Rat::from_f64(end.interval().hi),
+        None => Rat::from_f64(end.interval().hi) + Rat::frac(1, 1024),
+    }
 }
 
 fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> ClassifyDocument {
@@ -219,8 +279,19 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
     };
     let undecided = circle.map(|t| t.undecided_width);
     let reason = reason(scene, family, circle);
-    let rubbed = family.directions.iter().any(|d| d.with_friction);
-    let pushed = family.directions.iter().any(|d| d.peak.is_some());
+    let covered = |least: &[Verdict]| {
+        let arcs = circle.iter().flat_map(|t| &t.cover);
+        arcs.filter_map(|a| a.verdict).any(|v| least.contains(&v))
+    };
+    let rubs = scene.friction.as_ref().is_some_and(|m| m.sign() > 0);
+    let rubbed = family.directions.iter().any(|d| d.with_friction)
+        || rubs && covered(&[Verdict::Friction, Verdict::Force]);
+    let limited = scene
+        .classify
+        .as_ref()
+        .is_some_and(|c| c.force_limit.is_some());
+    let pushed = limited
+        && (family.directions.iter().any(|d| d.peak.is_some()) || covered(&[Verdict::Force]));
     let mut assumed = vec![
         "rigid planar bodies, straight quasistatic translation of the root",
         "each pawl is pulled towards rest; pawls meet neither each other nor the root",
@@ -269,35 +340,93 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
             t.cover
                 .iter()
                 .map(|a| {
-                    let text = |v: &Vec2| [v.x.to_string(), v.y.to_string()];
                     let [from, to] = a.ends();
                     ArcDocument {
                         from: text(&from),
                         to: text(&to),
                         verdict: a.verdict.map_or("undecided", Verdict::name),
+                        reason: arc_reason(scene, a),
                     }
                 })
                 .collect()
+        }),
+        critical_force: critical_force(family),
+        flips: circle.map_or_else(Vec::new, |t| t.flips.iter().map(flip).collect()),
+        samples: circle.map_or_else(Vec::new, |t| {
+            let of = |s: &Sample| SampleDocument {
+                direction: text(&Arc::unit(s.quarter, &s.s)),
+                verdict: s.verdict.name(),
+            };
+            t.samples.iter().map(of).collect()
         }),
         escape: circle.and_then(|t| t.escape.as_ref()).map(pair),
         undecided_width: undecided,
     }
 }
 
+fn text(v: &Vec2) -> [String; 2] {
+    [v.x.to_string(), v.y.to_string()]
+}
+
+fn flip(f: &Flip) -> FlipDocument {
+    let [from, to] = f
+        .sides
+        .each_ref()
+        .map(|s| text(&Arc::unit(s.quarter, &s.s)));
+    FlipDocument {
+        from,
+        to,
+        before: f.sides[0].verdict.name(),
+        after: f.sides[1].verdict.name(),
+        critical: f.critical.as_ref().map(|c| text(&c.0)),
+        at: f.critical.as_ref().map(|c| c.1.name()),
+    }
+}
+
+/// The least peak of the directions that nothing else blocks: at a larger limit that one gets out.
+fn critical_force(family: &Relative) -> Option<Bound> {
+    let free = family
+        .directions
+        .iter()
+        .filter(|d| d.verdict <= Verdict::Force && !d.open);
+    let peaks: Option<Vec<&Peak>> = free.map(|d| Some(&d.peak.as_ref()?.0.peak)).collect();
+    let least = peaks?.into_iter().reduce(|a, b| match (a, b) {
+        (Peak::Unbounded, b) => b,
+        (a, Peak::Unbounded) => a,
+        (Peak::Within(_, x), Peak::Within(_, y)) if x <= y => a,
+        _ => b,
+    })?;
+    Some(Bound::of(least, 12))
+}
+
+fn arc_reason(scene: &Scene, a: &Arc) -> String {
+    let proof = match a.verdict {
+        None => "nothing is proven",
+        Some(Verdict::None) => "nothing is claimed",
+        Some(Verdict::Force) => "held by friction, or by more than the force limit",
+        Some(Verdict::Friction) => "held by friction where the shapes alone do not",
+        Some(Verdict::Kinematic) => "the shapes alone hold",
+    };
+    match &a.middle {
+        Some((kind, by)) => {
+            let by = by.map_or("the root", |i| scene.pawls[i].name.as_str());
+            match kind {
+                OutcomeKind::Completed => format!("{proof}; its middle runs its length"),
+                _ => format!("{proof}; its middle ends {}, by {by}", kind.name()),
+            }
+        }
+        None => proof.to_owned(),
+    }
+}
+
 fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
     let out = d.run.outcome.kind == OutcomeKind::Completed;
     let plan = out.then(|| {
-        let lasted = d.run.outcome.time.interval().hi;
-        let lasted = d
-            .run
-            .outcome
-            .time
-            .as_rat()
-            .cloned()
-            .unwrap_or_else(|| Rat::from_f64(lasted));
         format!(
-            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{lasted}\"\n",
-            d.velocity.x, d.velocity.y
+            "[[motion]]\nvelocity = [\"{}\", \"{}\"]\nduration = \"{}\"\n",
+            d.velocity.x,
+            d.velocity.y,
+            run_time(d)
         )
     });
     DirectionDocument {
@@ -306,7 +435,7 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
         outcome: stop(scene, &d.run),
         friction_modelled: d.with_friction,
         critical_friction: d.critical.as_ref().map(|c| Num::of(&c.0)),
-        peak_force: d.peak.as_ref().map(|p| Bound::of(&p.0.peak)),
+        peak_force: d.peak.as_ref().map(|p| Bound::of(&p.0.peak, 12)),
         plan,
     }
 }
@@ -314,7 +443,19 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
 fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
     let end = &family.forward.outcome;
     if family.start.is_none() {
-        return format!("the plan does not complete: {}", end.kind.name());
+        let by = end
+            .pawl
+            .map_or(String::new(), |i| format!(", by {}", scene.pawls[i].name));
+        let mut text = format!(
+            "the plan does not complete: it ends {} in phase {}{by}",
+            end.kind.name(),
+            end.phase
+        );
+        if scene.motions.get(end.phase) == Some(&Motion::Reverse) {
+            text +=
+                "; that phase is a way back: without it in the plan, its end is what is classified";
+        }
+        return text;
     }
     let Some(weakest) = family.directions.iter().min_by_key(|d| d.verdict) else {
         return "no direction to decide".to_owned();
@@ -330,15 +471,24 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
         Verdict::None => format!("along {way} it gets out"),
         Verdict::Force => format!("along {way} it gets out only past the force limit"),
         _ => {
-            let by = weakest
-                .run
-                .outcome
-                .pawl
-                .map(|i| scene.pawls[i].name.as_str());
-            let end = weakest.run.outcome.kind.name();
-            format!("along {way} it ends {end}, by {}", by.unwrap_or("the root"))
+            let met = stop(scene, &weakest.run);
+            let by = met.pawl.as_deref().unwrap_or("the root");
+            let touching: Vec<String> = met.contacts.iter().map(words::contact).collect();
+            let on = if touching.is_empty() {
+                String::new()
+            } else {
+                format!(" ({})", touching.join(", "))
+            };
+            format!(
+                "along {way} it ends {} at t = {}, by {by}{on}",
+                met.kind,
+                words::short(&met.time)
+            )
         }
     };
+    if scene.motions.last() == Some(&Motion::Reverse) {
+        text += "; the plan comes back by itself, and this is asked of its end";
+    }
     if let Some(t) = circle {
         match (&t.escape, t.class) {
             (Some(w), _) => text += &format!("; along ({}, {}) it gets out", w.x, w.y),
@@ -349,229 +499,4 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
         }
     }
     text
-}
-
-/// The result of `forces`.
-#[derive(Debug, Serialize)]
-pub struct ForcesDocument {
-    /// `snapfit.forces/1`.
-    pub schema: &'static str,
-    /// Name of the scene.
-    pub scene: String,
-    /// How the motion ended.
-    pub outcome: &'static str,
-    /// Over the whole motion and all pawls; null where no pawl has a stiffness.
-    pub peak: Option<PeakDocument>,
-    /// The same a pawl.
-    pub pawls: Vec<PawlForces>,
-}
-
-/// A peak of force and one of torque.
-#[derive(Clone, Debug, Serialize)]
-pub struct PeakDocument {
-    /// The contact force.
-    pub force: Bound,
-    /// The torque at the hinge.
-    pub torque: Bound,
-    /// When the force peaks: at an instant, or between two.
-    pub time: When,
-    /// Whose force it is.
-    pub pawl: String,
-}
-
-/// An instant, or an interval of them.
-#[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub enum When {
-    /// At an instant.
-    At(Num),
-    /// Between two rational instants.
-    Between {
-        /// Not before.
-        lo: String,
-        /// Not after.
-        hi: String,
-    },
-}
-
-/// Forces of one pawl.
-#[derive(Debug, Serialize)]
-pub struct PawlForces {
-    /// Its name.
-    pub name: String,
-    /// Over its whole motion; null without a stiffness.
-    pub peak: Option<PeakDocument>,
-    /// A sliding segment each, in order of time.
-    pub segments: Vec<SegmentForces>,
-}
-
-/// Forces along one sliding segment.
-#[derive(Debug, Serialize)]
-pub struct SegmentForces {
-    /// When it begins.
-    pub from: Num,
-    /// When it ends.
-    pub to: Num,
-    /// The contact.
-    pub contact: ContactDocument,
-    /// The contact force.
-    pub force: Bound,
-    /// The torque at the hinge.
-    pub torque: Bound,
-    /// When the force peaks.
-    pub time: When,
-}
-
-/// Simulates a scene and encloses its forces, each within a relative 10^-`digits`.
-///
-/// # Errors
-/// [`PlanError`] where the plan asks for what cannot be.
-pub fn forces(scene: &Scene, digits: u32, ask: &Ask) -> Result<ForcesDocument, PlanError> {
-    let options = Options {
-        deadline: ask.deadline,
-        ..Options::default()
-    };
-    let run = simulate(scene, &options)?;
-    let ground = Ground::new(scene, ask.deadline);
-    let slid = stretches(scene, &ground.shapes, &ground.obstacles, &run);
-    let goal = (digits.saturating_mul(10)).div_ceil(3) + 2;
-    let zero = Rat::zero();
-    let mu = scene.friction.as_ref().unwrap_or(&zero);
-    let clock = |phase: usize, t: &Time| match t.as_rat() {
-        Some(t) => Num::of_rat(&(&run.phases[phase].from + t)),
-        None => Num::of(&t.affine(&run.phases[phase].from, &Rat::one())),
-    };
-    let when = |phase: usize, i: &Instant| match i {
-        Instant::At(t) => When::At(clock(phase, t)),
-        Instant::Between(a, b) => {
-            let from = &run.phases[phase].from;
-            When::Between {
-                lo: (from + a).to_string(),
-                hi: (from + b).to_string(),
-            }
-        }
-    };
-    let ended = |i: usize| {
-        matches!(run.outcome.kind, OutcomeKind::Jammed | OutcomeKind::Stuck)
-            && run.outcome.pawl == Some(i)
-    };
-    let mut pawls = Vec::new();
-    let mut overall: Option<(PeakDocument, Peak, Peak)> = None;
-    for (i, pawl) in run.pawls.iter().enumerate() {
-        let mut out = PawlForces {
-            name: pawl.name.clone(),
-            peak: None,
-            segments: Vec::new(),
-        };
-        let Some(k) = &scene.pawls[i].stiffness else {
-            pawls.push(out);
-            continue;
-        };
-        let mut best: Option<(Peaked, usize)> = None;
-        let mut turned = Peak::zero();
-        for (j, segment) in pawl.segments.iter().enumerate() {
-            let Some(sliding) = &segment.sliding else {
-                continue;
-            };
-            let (mut push, mut twist) = (None, Peak::zero());
-            for s in slid.iter().filter(|s| s.pawl == i && s.segment == j) {
-                push = Some(higher(push, force(s, k, mu, goal)));
-                twist = twist.max(torque(s, k, goal).peak);
-            }
-            let Some(mut push) = push else {
-                continue;
-            };
-            // The motion ends held: the force grows past every bound.
-            if ended(i) && segment.phase == run.outcome.phase && segment.to == run.outcome.time {
-                push = Peaked {
-                    peak: Peak::Unbounded,
-                    when: Instant::At(segment.to.clone()),
-                };
-            }
-            out.segments.push(SegmentForces {
-                from: clock(segment.phase, &segment.from),
-                to: clock(segment.phase, &segment.to),
-                contact: contact(scene, &sliding.contact),
-                force: Bound::of(&push.peak),
-                torque: Bound::of(&twist),
-                time: when(segment.phase, &push.when),
-            });
-            turned = turned.max(twist);
-            best = Some(match best {
-                None => (push, segment.phase),
-                Some((b, phase)) => {
-                    let first = exceeds(&b.peak, &push.peak);
-                    (
-                        higher(Some(b), push),
-                        if first { phase } else { segment.phase },
-                    )
-                }
-            });
-        }
-        if ended(i) && best.as_ref().is_none_or(|b| b.0.peak != Peak::Unbounded) {
-            let held = Peaked {
-                peak: Peak::Unbounded,
-                when: Instant::At(run.outcome.time.clone()),
-            };
-            best = Some((held, run.outcome.phase));
-        }
-        let (push, phase) = best.unwrap_or((
-            Peaked {
-                peak: Peak::zero(),
-                when: Instant::At(Time::from(Rat::zero())),
-            },
-            0,
-        ));
-        let peak = PeakDocument {
-            force: Bound::of(&push.peak),
-            torque: Bound::of(&turned),
-            time: when(phase, &push.when),
-            pawl: pawl.name.clone(),
-        };
-        out.peak = Some(peak.clone());
-        pawls.push(out);
-        overall = Some(match overall {
-            None => (peak, push.peak, turned),
-            Some((old, force, torque)) => {
-                let first = exceeds(&force, &push.peak);
-                (
-                    if first { old } else { peak },
-                    force.max(push.peak),
-                    torque.max(turned),
-                )
-            }
-        });
-    }
-    let peak = overall.map(|(p, force, torque)| PeakDocument {
-        force: Bound::of(&force),
-        torque: Bound::of(&torque),
-        ..p
-    });
-    Ok(ForcesDocument {
-        schema: "snapfit.forces/1",
-        scene: scene.name.clone(),
-        outcome: run.outcome.kind.name(),
-        peak,
-        pawls,
-    })
-}
-
-/// Whether `higher` keeps the instant of the first of two peaks.
-fn exceeds(a: &Peak, b: &Peak) -> bool {
-    match (a, b) {
-        (Peak::Unbounded, _) => true,
-        (_, Peak::Unbounded) => false,
-        (Peak::Within(x, _), Peak::Within(y, _)) => x >= y,
-    }
-}
-
-/// The scene with a way out appended to its plan, which can be simulated.
-pub fn with_motion(scene: &Scene, velocity: &Vec2, duration: &Rat) -> Scene {
-    let mut longer = scene.clone();
-    longer.motions.push(Motion::Translate {
-        velocity: velocity.clone(),
-        duration: Some(duration.clone()),
-        until_root_collision: false,
-    });
-    longer
 }

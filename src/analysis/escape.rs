@@ -17,7 +17,7 @@ use crate::motion::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
 };
 use crate::number::{Int, Poly, Rat};
-use crate::scene::Scene;
+use crate::scene::{Motion, Scene};
 use crate::slice::{Slice, Time};
 use std::time::Instant;
 
@@ -52,6 +52,17 @@ impl Start {
             angles,
         })
     }
+}
+
+/// The scene with a straight motion appended to its plan.
+pub fn with_motion(scene: &Scene, velocity: &Vec2, duration: &Rat) -> Scene {
+    let mut longer = scene.clone();
+    longer.motions.push(Motion::Translate {
+        velocity: velocity.clone(),
+        duration: Some(duration.clone()),
+        until_root_collision: false,
+    });
+    longer
 }
 
 /// How long a motion at a velocity lasts that covers the distance √`distance2`: a rational
@@ -145,6 +156,8 @@ impl<'a> Ground<'a> {
                     phase: 0,
                     probe: collision.as_ref().map(|c| &c.0),
                     stop: &stop,
+                    method: crate::motion::Method::Naive,
+                    known: None,
                 };
                 run(&slice, &set, &start.angles[i], &[])
             })

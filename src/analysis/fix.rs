@@ -208,6 +208,10 @@ impl Fix {
             bits: self.bits,
         }
     }
+    /// The part of it within an interval that is known to hold the value.
+    pub fn clamp(&self, within: &Fix) -> Fix {
+        self.meet(within)
+    }
     /// The arctangent. Monotone, so each end is enclosed by itself.
     pub fn atan(&self) -> Fix {
         let end = |v: &Int| {

@@ -7,16 +7,25 @@
 //! rounded arithmetic of [`fix`]. Kinematic and friction verdicts are exact; what holds an
 //! arctangent is enclosed, and decided only when the enclosure decides.
 
+pub mod bound;
 mod cells;
 pub mod classify;
 pub mod critical;
 pub mod document;
+pub mod draw;
+mod drive;
 pub mod escape;
 pub mod fix;
+pub mod forces;
+pub mod handbook;
+mod jet;
+mod load;
 pub mod peak;
 mod qpoly;
 pub mod stretch;
+pub mod summary;
 pub mod total;
 
 pub use classify::{Ask, Verdict};
-pub use document::{ClassifyDocument, ForcesDocument, classify, forces};
+pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};
+pub use forces::{ForcesDocument, Wish, forces};

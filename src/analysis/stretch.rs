@@ -57,6 +57,91 @@ pub struct Stretch {
     /// Sign of θ.
     pub side: i32,
     pub(super) law: Law,
+    /// Who touches whom; None on an angular stop.
+    pub(super) touch: Option<Touch>,
+    /// The root's velocity.
+    pub(super) velocity: Vec2,
+    p: [Int; 3],
+    q: [Int; 3],
+    branch: i32,
+}
+
+/// The geometry of a contact.
+#[derive(Clone, Debug)]
+pub(super) enum Touch {
+    /// The pawl's vertex a, from its hinge, on an edge with outward normal n.
+    B { a: Vec2, n: Vec2 },
+    /// The pawl's edge with outward normal m on a vertex at w from the hinge at the phase's start.
+    A { m: Vec2, w: Vec2 },
+}
+
+impl Stretch {
+    /// Whether θ stands still.
+    pub(super) fn still(&self) -> bool {
+        self.x[0] == self.x[1]
+    }
+    pub(super) fn curve(&self) -> Curve<'_> {
+        Curve {
+            p: &self.p,
+            q: &self.q,
+            branch: self.branch,
+        }
+    }
+    /// t = −p/q in the chart; None on an angular stop.
+    pub(super) fn clock(&self) -> Option<&(QPoly, QPoly)> {
+        match &self.law {
+            Law::Graph { clock, .. } => Some(clock),
+            _ => None,
+        }
+    }
+    /// Where d vanishes inside, in order of time: the variable (x, or t where θ stands still) and
+    /// the instant.
+    pub(super) fn reversals(&self) -> Vec<(Algebraic, Time)> {
+        let (lo, hi) = if self.x[0] <= self.x[1] {
+            (&self.x[0], &self.x[1])
+        } else {
+            (&self.x[1], &self.x[0])
+        };
+        match &self.law {
+            Law::Graph { drag, clock, .. } if lo != hi && !drag.poly().is_zero() => {
+                let roots = drag.poly().real_roots_in(&Rat::from(-1), &Rat::one());
+                let (p, q) = QPoly::pair(&clock.0.scale(&Rat::from(-1)), &clock.1);
+                let mut at: Vec<_> = roots
+                    .into_iter()
+                    .filter(|x| lo < x && x < hi)
+                    .map(|x| {
+                        let t = Time::ratio(&x, p.clone(), q.clone());
+                        (x, t)
+                    })
+                    .collect();
+                if self.x[0] > self.x[1] {
+                    at.reverse();
+                }
+                at
+            }
+            Law::Level { drag, .. } => {
+                let roots = drag.poly().real_roots().into_iter();
+                let (begin, end) = (self.t[0].exact(), self.t[1].exact());
+                let inside = roots.filter(|t| begin < t && t < end);
+                inside.map(|t| (t.clone(), Time::at(t))).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+    /// The sign of d between two places (x, or t where θ stands still).
+    pub(super) fn drag_between(&self, a: &Algebraic, b: &Algebraic) -> i32 {
+        let within = |a: &Algebraic, b: &Algebraic| match a.cmp(b) {
+            std::cmp::Ordering::Less => Algebraic::between(a, b),
+            std::cmp::Ordering::Greater => Algebraic::between(b, a),
+            std::cmp::Ordering::Equal => a.enclosure(64).0,
+        };
+        match &self.law {
+            Law::Graph { drag, .. } if self.still() => self.x[0].sign_of(&drag.poly()),
+            Law::Graph { drag, .. } => drag.eval(&within(a, b)).sign(),
+            Law::Level { drag, .. } => drag.eval(&within(a, b)).sign(),
+            Law::Stop => 0,
+        }
+    }
 }
 
 /// |F_θ|, ρ_y and d along a stretch.
@@ -126,6 +211,11 @@ pub fn stretches(
                 t: [segment.from.clone(), segment.to.clone()],
                 side: 0,
                 law: Law::Stop,
+                touch: world.touch(),
+                velocity: phase.velocity.clone(),
+                p: sliding.p.clone(),
+                q: sliding.q.clone(),
+                branch: sliding.branch,
             };
             world.split(&from, &to, &place, &mut out);
         }
@@ -148,7 +238,7 @@ fn known(pawl: &PawlTrace, segment: &Segment, late: bool) -> Option<Angle> {
     }
 }
 
-struct Curve<'a> {
+pub(super) struct Curve<'a> {
     p: &'a [Int; 3],
     q: &'a [Int; 3],
     branch: i32,
@@ -315,6 +405,31 @@ impl World<'_> {
             x = edge(-step);
             t = until;
         }
+    }
+
+    fn touch(&self) -> Option<Touch> {
+        let Contact::Obstacle {
+            obstacle,
+            kind,
+            ring,
+            obstacle_feature,
+            pawl_feature,
+        } = self.contact
+        else {
+            return None;
+        };
+        let oring = &self.obstacles[obstacle as usize].rings[ring as usize];
+        let (i, j) = (pawl_feature as usize, obstacle_feature as usize);
+        Some(match kind {
+            ContactKind::B => Touch::B {
+                a: self.shape.ring.vertices[i].clone(),
+                n: oring.normals[j].clone(),
+            },
+            ContactKind::A => Touch::A {
+                m: self.shape.ring.normals[i].clone(),
+                w: &oring.vertices[j] - &self.p0,
+            },
+        })
     }
 
     /// P and Q without their common factor, their quotient unchanged.

@@ -10,6 +10,7 @@ use super::cells::{Directions, Field, Grain, Model};
 use super::classify::{Verdict, direction};
 use super::escape::{Ground, Start};
 use crate::geometry::Vec2;
+use crate::motion::OutcomeKind;
 use crate::number::Rat;
 use crate::scene::Scene;
 
@@ -26,6 +27,29 @@ pub struct Arc {
     /// What is proven of every direction of the arc: blocked at least so firmly. None where nothing
     /// is.
     pub verdict: Option<Verdict>,
+    /// How the exact motion in its middle ends, and by which pawl.
+    pub middle: Option<(OutcomeKind, Option<usize>)>,
+}
+
+/// One direction, decided exactly.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Which quarter of the circle.
+    pub quarter: u8,
+    /// tan(φ/2) into the quarter.
+    pub s: Rat,
+    /// How firmly it is blocked.
+    pub verdict: Verdict,
+}
+
+/// Where the exact verdict changes: between two directions 2⁻⁶⁰ apart at most.
+#[derive(Clone, Debug)]
+pub struct Flip {
+    /// Both sides, counter-clockwise.
+    pub sides: [Sample; 2],
+    /// A short direction between them with its verdict, where there is one: the critical
+    /// direction itself, most likely.
+    pub critical: Option<(Vec2, Verdict)>,
 }
 
 impl Arc {
@@ -75,6 +99,10 @@ pub struct Total {
     pub cover: Vec<Arc>,
     /// A direction that gets out.
     pub escape: Option<Vec2>,
+    /// Where the verdict of single directions flips.
+    pub flips: Vec<Flip>,
+    /// The single directions that were decided, in order round the circle.
+    pub samples: Vec<Sample>,
     /// The distance run.
     pub distance: Rat,
     /// Radians of directions that are not proven to be at least as firmly blocked as `class`.
@@ -128,8 +156,16 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         weakest: known,
         cover: Vec::new(),
         escape: None,
+        samples: Vec::new(),
     };
     search.run();
+    search
+        .samples
+        .sort_by(|a, b| (a.quarter, &a.s).cmp(&(b.quarter, &b.s)));
+    search
+        .samples
+        .dedup_by(|a, b| (a.quarter, &a.s) == (b.quarter, &b.s));
+    let flips = search.flips();
     let class = search.weakest;
     let escape = search.escape;
     let undecided_width = search
@@ -142,8 +178,55 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         class,
         cover: search.cover,
         escape,
+        flips,
+        samples: search.samples,
         distance,
         undecided_width,
+    }
+}
+
+/// How many flips are isolated, and the most pairs of pawl and obstacle corners of a scene whose
+/// flips are looked for beside a way out.
+const FLIPS: usize = 32;
+const SMALL: usize = 1000;
+
+/// The verdict of a direction, the time at which it is blocked, how and by whom.
+type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
+
+/// The fraction with the least denominator strictly between 0 ≤ a < b (None: no upper end).
+fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
+    let whole = Rat::from(a.numer().div_rem_floor(a.denom()).0);
+    let next = &whole + &Rat::one();
+    match b {
+        Some(b) if next >= *b => {
+            // Both ends share the integer part: go on with the reciprocals of what is left.
+            let low = a - &whole;
+            let up = (b - &whole).recip();
+            let rest = simplest(&up, (!low.is_zero()).then(|| low.recip()).as_ref());
+            whole + rest.recip()
+        }
+        _ => next,
+    }
+}
+
+/// A direction strictly inside an arc with a slope of few digits.
+fn short_direction(quarter: u8, from: &Rat, to: &Rat) -> Vec2 {
+    // Into its quarter the slope 2s/(1 − s²) grows from 0; near the end its reciprocal is short.
+    let one = Rat::one();
+    let steep = |s: &Rat| (s + s) / (&one - &s.square());
+    let flat = |s: &Rat| (&one - &s.square()) / (s + s);
+    let (x, y) = if *to < Rat::frac(1, 2) {
+        (Rat::one(), simplest(&steep(from), Some(&steep(to))))
+    } else if from.sign() > 0 {
+        (simplest(&flat(to), Some(&flat(from))), Rat::one())
+    } else {
+        (Rat::one(), Rat::one())
+    };
+    match quarter % 4 {
+        0 => Vec2::new(x, y),
+        1 => Vec2::new(-y, x),
+        2 => Vec2::new(-x, -y),
+        _ => Vec2::new(y, -x),
     }
 }
 
@@ -156,18 +239,31 @@ struct Search<'a> {
     weakest: Option<Verdict>,
     cover: Vec<Arc>,
     escape: Option<Vec2>,
+    samples: Vec<Sample>,
 }
 
 impl Search<'_> {
     fn run(&mut self) {
-        // Coarse samples first: most ways out are wide.
+        // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
         let samples = 8;
+        let small = self.pairs() <= SMALL;
         for quarter in 0..4 {
             for k in 0..samples {
                 let s = Rat::frac(k, samples);
-                if self.sample(quarter, &s).is_none() {
+                if self.sample(quarter, &s).is_none() && (!small || self.escape.is_none()) {
                     return;
                 }
+            }
+        }
+        if self.escape.is_some() {
+            return;
+        }
+        for w in self.edges() {
+            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            if d.verdict == Verdict::None && !d.open {
+                self.weakest = Some(Verdict::None);
+                self.escape = Some(w);
+                return;
             }
         }
         for quarter in 0..4 {
@@ -176,6 +272,7 @@ impl Search<'_> {
                 from: Rat::zero(),
                 to: Rat::one(),
                 verdict: None,
+                middle: None,
             };
             self.cover(whole, 0);
             if self.escape.is_some() {
@@ -183,22 +280,137 @@ impl Search<'_> {
                 return;
             }
         }
+        // What resists is most likely a critical direction: a short one inside is decided by
+        // itself.
+        let open: Vec<Arc> = self
+            .cover
+            .iter()
+            .filter(|a| a.verdict.is_none())
+            .cloned()
+            .collect();
+        for arc in open.iter().take(FLIPS) {
+            let w = short_direction(arc.quarter, &arc.from, &arc.to);
+            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            if self.ground.late() {
+                return;
+            }
+            if !d.open {
+                self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+                if d.verdict == Verdict::None {
+                    self.escape = Some(w);
+                    self.cover.clear();
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Pairs of corners of pawls and obstacles: how large the scene is.
+    fn pairs(&self) -> usize {
+        let scene = self.ground.scene;
+        let mine: usize = scene.pawls.iter().map(|p| p.vertices.len()).sum();
+        let holes = |o: &crate::scene::Obstacle| o.holes.iter().map(Vec::len).sum::<usize>();
+        let theirs = scene.obstacles.iter().map(|o| o.vertices.len() + holes(o));
+        mine * theirs.sum::<usize>()
+    }
+
+    /// The directions along the obstacles' edges, both ways.
+    fn edges(&self) -> Vec<Vec2> {
+        let mut out: Vec<Vec2> = Vec::new();
+        for ring in self.ground.obstacles.iter().flat_map(|o| &o.rings) {
+            for n in &ring.normals {
+                let along = Vec2::new(-&n.y, n.x.clone());
+                let known = out.iter().any(|w| w.cross(&along).is_zero());
+                if !known && out.len() < FLIPS {
+                    out.push(along);
+                }
+            }
+        }
+        let back: Vec<Vec2> = out.iter().map(|w| -w).collect();
+        out.extend(back);
+        out
+    }
+
+    /// Isolates the flips between neighbouring samples.
+    fn flips(&mut self) -> Vec<Flip> {
+        let width = Rat::from(2).pow(60).recip();
+        let mut out = Vec::new();
+        let n = self.samples.len();
+        for i in 0..n {
+            let (a, b) = (self.samples[i].clone(), self.samples[(i + 1) % n].clone());
+            // Within one quarter, its end included.
+            let end = match (b.quarter + 4 - a.quarter) % 4 {
+                0 if b.s > a.s => b.s.clone(),
+                1 if b.s.is_zero() => Rat::one(),
+                _ => continue,
+            };
+            if a.verdict == b.verdict || out.len() >= FLIPS {
+                continue;
+            }
+            let (mut low, mut high) = (
+                a.clone(),
+                Sample {
+                    quarter: a.quarter,
+                    s: end,
+                    ..b
+                },
+            );
+            while &high.s - &low.s > width {
+                let s = Rat::midpoint(&low.s, &high.s);
+                let w = Arc::unit(low.quarter, &s);
+                let d = direction(self.ground, self.start, &w, &self.distance2, false);
+                if d.open || self.ground.late() {
+                    break;
+                }
+                let mid = Sample {
+                    quarter: low.quarter,
+                    s,
+                    verdict: d.verdict,
+                };
+                if mid.verdict == low.verdict {
+                    low = mid;
+                } else {
+                    high = mid;
+                }
+            }
+            let w = short_direction(low.quarter, &low.s, &high.s);
+            let short = w.x.denom().bits() + w.y.numer().bits() < 48
+                && w.x.numer().bits() + w.y.denom().bits() < 48;
+            let critical = short.then(|| {
+                let d = direction(self.ground, self.start, &w, &self.distance2, false);
+                (w, d.verdict)
+            });
+            out.push(Flip {
+                sides: [low, high],
+                critical,
+            });
+        }
+        out
     }
 
     /// The verdict of one direction with the time at which it is blocked; None if it gets out, or
     /// the time is up.
-    fn sample(&mut self, quarter: u8, s: &Rat) -> Option<(Verdict, f64)> {
+    fn sample(&mut self, quarter: u8, s: &Rat) -> Option<Met> {
         if self.ground.late() {
             return None;
         }
         let w = Arc::unit(quarter, s);
         let d = direction(self.ground, self.start, &w, &self.distance2, false);
         if d.open {
-            return Some((Verdict::None, self.distance));
+            return Some((
+                Verdict::None,
+                self.distance,
+                (d.run.outcome.kind, d.run.outcome.pawl),
+            ));
         }
+        self.samples.push(Sample {
+            quarter,
+            s: s.clone(),
+            verdict: d.verdict,
+        });
         self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
         if d.verdict == Verdict::None {
-            self.escape = Some(w);
+            self.escape.get_or_insert(w);
             return None;
         }
         let time = match (&d.peak, d.verdict) {
@@ -208,19 +420,20 @@ impl Search<'_> {
             },
             _ => d.run.outcome.time.interval().hi,
         };
-        Some((d.verdict, time))
+        Some((d.verdict, time, (d.run.outcome.kind, d.run.outcome.pawl)))
     }
 
     fn cover(&mut self, mut arc: Arc, depth: u32) {
         if self.escape.is_some() {
             return;
         }
-        let Some((verdict, time)) = self.sample(arc.quarter, &arc.middle()) else {
+        let Some((verdict, time, middle)) = self.sample(arc.quarter, &arc.middle()) else {
             if self.escape.is_none() {
                 self.cover.push(arc);
             }
             return;
         };
+        arc.middle = Some(middle);
         if depth >= 2 {
             arc.verdict = self.prove(&arc, verdict, time, depth);
         }
@@ -234,6 +447,7 @@ impl Search<'_> {
             from: from.clone(),
             to: to.clone(),
             verdict: None,
+            middle: None,
         };
         self.cover(half(&arc.from, &mid), depth + 1);
         self.cover(half(&mid, &arc.to), depth + 1);
@@ -249,6 +463,7 @@ impl Search<'_> {
         let grain = Grain {
             step: (reached * spread).max(scale * 1e-6),
             spread,
+            deadline: self.ground.deadline,
             until: (reached * 1.5 + scale * 0.25 * f64::from(depth.min(8))).min(self.distance),
         };
         let mut models = vec![verdict];
@@ -264,5 +479,27 @@ impl Search<'_> {
             };
             self.field.blocked(&w, model, &grain)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn simple_fractions_are_found() {
+        let between = |a: Rat, b: Rat| simplest(&a, Some(&b));
+        assert_eq!(between(Rat::frac(3, 10), Rat::frac(2, 5)), Rat::frac(1, 3));
+        assert_eq!(between(Rat::zero(), Rat::frac(1, 7)), Rat::frac(1, 8));
+        assert_eq!(between(Rat::frac(5, 2), Rat::frac(7, 2)), Rat::from(3));
+        let third = Rat::frac(1, 3);
+        let eps = Rat::from(2).pow(70).recip();
+        assert_eq!(between(&third - &eps, &third + &eps), third);
+        // The diagonal of each quarter lies between directions on either side of it.
+        for quarter in 0..4 {
+            let w = short_direction(quarter, &Rat::frac(2, 5), &Rat::frac(3, 7));
+            assert_eq!(w.x.abs(), w.y.abs());
+            assert!(w.dot(&Arc::unit(quarter, &Rat::frac(2, 5))).sign() > 0);
+        }
     }
 }

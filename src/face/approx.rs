@@ -33,6 +33,18 @@ impl Approx {
     /// An integer.
     #[inline]
     pub(crate) fn from_int(x: i128) -> Approx {
+        match i64::try_from(x) {
+            Ok(x) => Approx::from_word(x),
+            Err(_) => {
+                let v = x as f64;
+                let e = v.abs() * f64::EPSILON;
+                Approx { v, e }
+            }
+        }
+    }
+    /// A machine integer.
+    #[inline]
+    pub(crate) fn from_word(x: i64) -> Approx {
         let v = x as f64;
         let exact = x.unsigned_abs() < 1 << 53;
         Approx {

@@ -9,6 +9,7 @@ use super::isolate::{Roots, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
 use crate::number::Poly;
 use std::cmp::Ordering;
+use std::ops::{Add, Mul, Sub};
 
 impl Kernel {
     /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
@@ -32,34 +33,28 @@ impl Kernel {
     /// h in machine words, where the curves are small.
     #[inline]
     pub(super) fn diff_small(&self, c: CurveId, d: CurveId) -> Option<[i128; 5]> {
-        let (Coeffs::Small(a), Coeffs::Small(b)) = (
-            &self.curves[c as usize].exact,
-            &self.curves[d as usize].exact,
-        ) else {
+        let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
+        let (Coeffs::Small(x), Coeffs::Small(y)) = (&a.exact, &b.exact) else {
             return None;
         };
-        let times = |x: i64, y: i64| i128::from(x) * i128::from(y);
-        if self.proportional(c, d) {
-            let k = 5 - (3..6).rev().position(|i| a[i] != 0).unwrap_or(0);
-            let h = |i: usize| times(a[i], b[k]) - times(b[i], a[k]);
-            return Some([h(0), h(1), h(2), 0, 0]);
-        }
-        let mut h = [0; 5];
-        for i in 0..3 {
-            for j in 0..3 {
-                h[i + j] += times(a[i], b[j + 3]) - times(b[i], a[j + 3]);
-            }
-        }
-        Some(h)
+        Some(if a.tiny && b.tiny {
+            difference::<i64>(x, y, a.den == b.den).map(i128::from)
+        } else {
+            difference::<i128>(x, y, a.den == b.den)
+        })
     }
 
     /// The coefficients of h with certified errors.
     #[inline]
     fn diff(&self, c: CurveId, d: CurveId) -> [Approx; 5] {
-        if let Some(h) = self.diff_small(c, d) {
-            return h.map(Approx::from_int);
-        }
         let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
+        if let (Coeffs::Small(x), Coeffs::Small(y)) = (&a.exact, &b.exact) {
+            return if a.tiny && b.tiny {
+                difference::<i64>(x, y, a.den == b.den).map(Approx::from_word)
+            } else {
+                difference::<i128>(x, y, a.den == b.den).map(Approx::from_int)
+            };
+        }
         let mut h = [Approx::default(); 5];
         if self.proportional(c, d) {
             let k = if a.q[2].v != 0.0 {
@@ -168,10 +163,7 @@ impl Kernel {
         let (mut h, u) = (self.diff_small(c, d)?, self.approx(x));
         let mut odd = false;
         loop {
-            for k in 1..5 {
-                h[k - 1] = h[k].checked_mul(k as i128)?;
-            }
-            h[4] = 0;
+            h = derivative_of(&h)?;
             odd = !odd;
             if h == [0; 5] {
                 return None;
@@ -204,6 +196,40 @@ impl Kernel {
         }
     }
 
+    /// Whether the two surely meet nowhere over [lo, hi] but at x, where they do.
+    pub(crate) fn miss_beside(&self, c: CurveId, d: CurveId, lo: f64, hi: f64, x: NumId) -> bool {
+        let at = self.enclosure(x);
+        if at.0 <= lo && hi <= at.1 {
+            return true;
+        }
+        let (c, d) = (c.min(d), c.max(d));
+        let mut g = self.diff(c, d);
+        let Some(mut n) = (0..5).rev().find(|&k| g[k].sign() != Some(0)) else {
+            return false;
+        };
+        let u = self.approx(x);
+        let mut rest = None;
+        while n > 0 {
+            deflate(&mut g, &mut n, u);
+            if one_sign(&g[..=n], lo, hi) {
+                return true;
+            }
+            // Perhaps a root of higher order.
+            let (Some(m), Some(h)) = (self.equation(x), rest.or_else(|| self.diff_small(c, d)))
+            else {
+                return false;
+            };
+            let Some(h) = derivative_of(&h) else {
+                return false;
+            };
+            if vanishes(&h, &m) != Some(true) {
+                return false;
+            }
+            rest = Some(h);
+        }
+        false
+    }
+
     /// Every root of h in [lo, hi] goes to `out`, those equal to a `known` root perhaps not, and perhaps
     /// roots outside. The known ones must be roots of h.
     pub(crate) fn crossings(
@@ -227,15 +253,7 @@ impl Kernel {
             if n == 0 {
                 break;
             }
-            let x = self.approx(e);
-            let mut carry = g[n];
-            for k in (0..n).rev() {
-                let below = g[k] + x * carry;
-                g[k] = carry;
-                carry = below;
-            }
-            g[n] = Approx::default();
-            n -= 1;
+            deflate(&mut g, &mut n, self.approx(e));
         }
         // A margin, so that a root at an end of the range lies well inside.
         let (lo, hi) = range;
@@ -319,6 +337,50 @@ impl Kernel {
         }
         out.extend(self.pairs.get(&(c, d)).into_iter().flat_map(|p| &p.ids));
     }
+}
+
+/// h from the coefficients, in a word that holds it; see [`Kernel::proportional`].
+#[inline]
+fn difference<T>(a: &[i64; 6], b: &[i64; 6], proportional: bool) -> [T; 5]
+where
+    T: From<i64> + Copy + Default + Mul<Output = T> + Sub<Output = T> + Add<Output = T>,
+{
+    let times = |x: i64, y: i64| T::from(x) * T::from(y);
+    let mut h = [T::default(); 5];
+    if proportional {
+        let k = 5 - (3..6).rev().position(|i| a[i] != 0).unwrap_or(0);
+        for i in 0..3 {
+            h[i] = times(a[i], b[k]) - times(b[i], a[k]);
+        }
+    } else {
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i + j] = h[i + j] + (times(a[i], b[j + 3]) - times(b[i], a[j + 3]));
+            }
+        }
+    }
+    h
+}
+
+/// Divides by u − x, a factor; the degree n falls by one.
+#[inline]
+fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
+    let mut carry = g[*n];
+    for k in (0..*n).rev() {
+        let below = g[k] + x * carry;
+        g[k] = carry;
+        carry = below;
+    }
+    g[*n] = Approx::default();
+    *n -= 1;
+}
+
+fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {
+    let mut out = [0; 5];
+    for k in 1..5 {
+        out[k - 1] = h[k].checked_mul(k as i128)?;
+    }
+    Some(out)
 }
 
 #[inline]

@@ -204,7 +204,7 @@ impl Tree {
 }
 
 /// Orders the entries so that every aligned run of 8, 64, 512, … lies close together.
-fn arrange(entries: &mut [(Hull, u32)]) {
+pub(crate) fn arrange(entries: &mut [(Hull, u32)]) {
     let n = entries.len();
     if n <= FAN {
         return;

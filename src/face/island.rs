@@ -36,6 +36,9 @@ impl Tracer<'_> {
         }
         open.sort_by(|a, b| self.cmp_points(a.1, b.1));
         for (comp, at) in open {
+            if self.tests > self.budget {
+                return;
+            }
             if !self.touched[comp as usize] && self.opens_into_face(at) {
                 self.trace_island(comp);
             }

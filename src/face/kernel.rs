@@ -40,12 +40,17 @@ pub(super) enum Coeffs {
 /// Below this the coefficients of h stay below 2¹²⁷: six products of two.
 const SMALL: u64 = 1 << 60;
 
+/// Below this the coefficients of h stay below 2⁶³.
+const TINY: u64 = 1 << 29;
+
 pub(super) struct Curve {
     pub(super) p: [Approx; 3],
     pub(super) q: [Approx; 3],
     pub(super) exact: Coeffs,
     /// Equal for proportional denominators, and only for those.
     pub(super) den: u32,
+    /// All coefficients are below `TINY`.
+    pub(super) tiny: bool,
 }
 
 /// What a number is.
@@ -135,6 +140,7 @@ impl Kernel {
             q: [a[3], a[4], a[5]],
             exact: Coeffs::Big(Box::new(key.clone())),
             den,
+            tiny: false,
         });
         self.big_curve_ids.insert(key, id);
         Ok(id)
@@ -157,6 +163,7 @@ impl Kernel {
                 q: [a[3], a[4], a[5]],
                 exact: Coeffs::Small(c),
                 den,
+                tiny: c.iter().all(|x| x.unsigned_abs() < TINY),
             });
         }
         id

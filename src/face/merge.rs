@@ -13,9 +13,9 @@
 //! of one half through p bound that half's face there (p lies in its closure), so p is a vertex of R
 //! or of B, or one edge of each passes through it and the walk finds the crossing.
 
-use super::index::EMPTY;
+use super::index::{EMPTY, Hull, arrange};
 use super::kernel::Kernel;
-use super::trace::{Carrier, Comp, Dir, Item, NONE, OnArc, Point, Tracer};
+use super::trace::{Carrier, Comp, Dir, Item, NONE, OnArc, Point, Tracer, hull_of};
 
 /// The boundary of one face: its edges by their vertices, cut at every vertex of the arrangement.
 #[derive(Default)]
@@ -33,6 +33,23 @@ pub(crate) struct Face {
 
 /// The face of arcs that know nothing of each other, by walking.
 pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, OnArc> {
+    let face = walk_within(k, arcs, start, u64::MAX)?;
+    Ok(face.expect("no walk makes so many tests"))
+}
+
+/// The same, given up (None) once it has tested more than `budget` pairs for a meeting.
+pub(crate) fn walk_within(
+    k: &mut Kernel,
+    arcs: &[Item],
+    start: Point,
+    budget: u64,
+) -> Result<Option<Face>, OnArc> {
+    let (mut items, comps, ends) = arcs_alone(arcs);
+    trace(k, &mut items, &comps, ends, start, budget)
+}
+
+/// Arcs as items to walk on: each with ends and a component of its own.
+pub(super) fn arcs_alone(arcs: &[Item]) -> (Vec<Item>, Vec<Comp>, Vec<Point>) {
     let mut items = Vec::with_capacity(arcs.len());
     let mut comps = Vec::with_capacity(arcs.len());
     let mut ends = Vec::with_capacity(2 * arcs.len());
@@ -56,7 +73,7 @@ pub(crate) fn walk(k: &mut Kernel, arcs: &[Item], start: Point) -> Result<Face, 
             item: i as u32,
         });
     }
-    trace(k, &mut items, &comps, ends, start)
+    (items, comps, ends)
 }
 
 /// The face of several faces' edges, each face a colour.
@@ -78,7 +95,8 @@ fn merge(k: &mut Kernel, faces: Vec<Face>, start: Point) -> Result<Face, OnArc> 
         }));
         points.extend(face.points);
     }
-    trace(k, &mut items, &comps, points, start)
+    let face = trace(k, &mut items, &comps, points, start, u64::MAX)?;
+    Ok(face.expect("no walk makes so many tests"))
 }
 
 fn trace(
@@ -87,24 +105,38 @@ fn trace(
     comps: &[Comp],
     points: Vec<Point>,
     start: Point,
-) -> Result<Face, OnArc> {
+    budget: u64,
+) -> Result<Option<Face>, OnArc> {
     let mut t = Tracer::new(k, items, comps, points.into_iter());
+    t.budget = budget;
     t.outline(start)?;
     t.islands();
+    if t.tests > t.budget {
+        return Ok(None);
+    }
     let face = extract(&mut t);
     #[cfg(debug_assertions)]
     check(&face, k);
-    Ok(face)
+    Ok(Some(face))
 }
 
 /// How many faces one merge takes: each level of the tree walks along all edges that are left, so fewer levels
 /// are faster as long as few pairs of edges are near each other.
 const WAYS: usize = 16;
 
-/// How the arcs are dealt to the leaves: a fixed seed, so that every run is the same.
+/// A fixed seed, so that every run is the same.
 const SEED: u64 = 0x5eed_5eed_5eed_5eed;
 
+/// Arcs that are walked alone to see how the others are best dealt; and from how many on that is done.
+const SAMPLE: usize = 2048;
+const SAMPLED: usize = 8 * SAMPLE;
+
 /// The face by merges, from leaves of `leaf` arcs. Counts the merges made.
+///
+/// Any balanced tree keeps the bound of Lemma 9.2. Dealt at random, every leaf sees all of the plane, so
+/// what lies behind the boundary is dropped at once; but where nearly all arcs bound the face, nothing is, and arcs
+/// near each other had better go to one leaf: what they do to each other is then settled early, in few
+/// places of the memory. The face of a sample tells which it is.
 pub(crate) fn divide(
     k: &mut Kernel,
     arcs: &[Item],
@@ -119,6 +151,22 @@ pub(crate) fn divide(
             .wrapping_mul(6364136223846793005)
             .wrapping_add(1442695040888963407);
         dealt.swap(i, ((seed >> 32) as usize) % (i + 1));
+    }
+    if dealt.len() >= SAMPLED {
+        let face = walk(k, &dealt[..SAMPLE], start)?;
+        let mut seen: Vec<u32> = face.items.iter().map(|i| i.arc).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        if 2 * seen.len() >= SAMPLE {
+            let mut order: Vec<(Hull, u32)> = arcs
+                .iter()
+                .zip(0..)
+                .map(|(arc, i)| (hull_of(k, arc), i))
+                .collect();
+            arrange(&mut order);
+            dealt.clear();
+            dealt.extend(order.iter().map(|&(_, i)| arcs[i as usize]));
+        }
     }
     conquer(k, &dealt, start, leaf.max(1), merges)
 }

@@ -15,6 +15,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod approx;
+mod boundary;
 mod compare;
 mod hash;
 mod index;
@@ -30,6 +31,9 @@ mod run;
 mod stops;
 mod trace;
 
+pub(crate) use boundary::{Boundary, Glue, boundary};
+pub(crate) use index::{Hull, Tree};
 pub use kernel::Stats;
+pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};
 pub use run::{Answer, Args, FaceError, Method, Question, Report, face, run_cli};

@@ -2,7 +2,7 @@
 
 use super::index::EMPTY;
 use super::kernel::{Defect, Kernel, Stats};
-use super::merge::{Face, divide, walk};
+use super::merge::{Face, divide, walk, walk_within};
 use super::read::{ArcFile, ReadError, SourceArc, Upright};
 use super::trace::{Carrier, Item, NONE, OnArc, Point};
 use crate::number::Rat;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Which way leads to the face. The answer does not depend on it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, clap::ValueEnum)]
 pub enum Method {
-    /// Whichever is faster, by the number of arcs.
+    /// Walk, unless that tests too many pairs for the number of arcs; then merge.
     #[default]
     Auto,
     /// Walk round the boundary among all arcs.
@@ -76,6 +76,15 @@ impl std::error::Error for FaceError {}
 /// Arcs a leaf of the merge tree. From 32 to 512 it made no difference on the sets of arcs; the number of ways
 /// does.
 const LEAF: usize = 128;
+
+/// How many pairs the walk may test among n arcs before merging is expected to be faster: n log n times what
+/// separates, on the sets of arcs and the families of `benches/growth.rs`, walks whose searches find what is
+/// near (at most 20 n log n) from walks that search in vain (more the larger n is). Giving up so
+/// late costs a tenth of the merge that follows.
+fn patience(n: usize) -> u64 {
+    let n = n as u64 + 64;
+    40 * n * u64::from(n.ilog2())
+}
 
 /// The face of the arcs that holds the start: a [`Question`] with graphs only.
 ///
@@ -143,13 +152,20 @@ impl Question<'_> {
             c: k.constant(&self.start.1),
         };
         let mut merges = 0;
-        let method = match self.method {
-            Method::Auto => Method::Walk,
-            m => m,
-        };
+        let mut method = self.method;
         let found = match method {
             Method::Merge => divide(&mut k, &items, start, self.leaf, &mut merges),
-            _ => walk(&mut k, &items, start),
+            Method::Walk => walk(&mut k, &items, start),
+            Method::Auto => match walk_within(&mut k, &items, start, patience(items.len())) {
+                Ok(None) => {
+                    method = Method::Merge;
+                    divide(&mut k, &items, start, self.leaf, &mut merges)
+                }
+                walked => {
+                    method = Method::Walk;
+                    walked.map(|f| f.expect("not given up"))
+                }
+            },
         };
         let Face {
             half_edges,
@@ -169,14 +185,14 @@ impl Question<'_> {
     }
 }
 
-fn why(d: Defect) -> &'static str {
+pub(super) fn why(d: Defect) -> &'static str {
     match d {
         Defect::NoSuchRoot => "an end names a root that its equation does not have",
         Defect::NoDenominator => "the denominator is zero",
     }
 }
 
-fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static str> {
+pub(super) fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static str> {
     let c = k.curve(&arc.p, &arc.q).map_err(why)?;
     let l = k.root(&arc.left.c, arc.left.k).map_err(why)?;
     let r = k.root(&arc.right.c, arc.right.k).map_err(why)?;
@@ -199,7 +215,7 @@ fn graph(k: &mut Kernel, arc: &SourceArc, index: usize) -> Result<Item, &'static
     })
 }
 
-fn upright(k: &mut Kernel, arc: &Upright, index: usize) -> Result<Item, &'static str> {
+pub(super) fn upright(k: &mut Kernel, arc: &Upright, index: usize) -> Result<Item, &'static str> {
     let x = k.root(&arc.u.c, arc.u.k).map_err(why)?;
     let low = k.curve(&arc.low[0], &arc.low[1]).map_err(why)?;
     let high = k.curve(&arc.high[0], &arc.high[1]).map_err(why)?;

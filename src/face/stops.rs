@@ -8,7 +8,7 @@
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
 use super::index::Hull;
-use super::item::{Carrier, NONE, Place, Point};
+use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
 use super::trace::Tracer;
 use std::cmp::Ordering;
@@ -21,6 +21,8 @@ pub(super) struct Hit {
     other: u32,
     there: Place,
     cross: u32,
+    /// The vertex there, where it is known already.
+    vertex: u32,
 }
 
 /// An item through a vertex, in the vertex's list.
@@ -78,7 +80,7 @@ impl Window {
 /// How many others a window at this depth may have before it is halved.
 fn crowd(depth: usize) -> usize {
     if depth < DEEPEST {
-        8 + depth * depth
+        8 + depth * depth / 8
     } else {
         usize::MAX
     }
@@ -131,7 +133,11 @@ impl Tracer<'_> {
     /// Marks the items that a vertex knows.
     fn mark_linked(&mut self, v: u32) {
         self.mark_serial += 1;
-        let mut at = self.vertices[v as usize].links;
+        let vertex = &self.vertices[v as usize];
+        if vertex.germs != NONE {
+            return;
+        }
+        let mut at = vertex.links;
         while at != NONE {
             let link = self.links[at as usize];
             self.mark[link.item as usize] = self.mark_serial;
@@ -153,6 +159,16 @@ impl Tracer<'_> {
         let next = self.vertices[v as usize].links;
         self.vertices[v as usize].links = self.links.len() as u32;
         self.links.push(Link { item, place, next });
+    }
+
+    /// Calls `found` with every item through a visited vertex.
+    pub(super) fn each_link(&self, v: u32, mut found: impl FnMut(u32)) {
+        let mut at = self.vertices[v as usize].links;
+        while at != NONE {
+            let link = &self.links[at as usize];
+            found(link.item);
+            at = link.next;
+        }
     }
 
     /// Lexicographic order of two points.
@@ -248,12 +264,23 @@ impl Tracer<'_> {
         self.stamp[item as usize] = serial;
         let (items, k, stamp) = (self.items, &*self.k, &mut self.stamp);
         let me = &items[item as usize];
-        let mut few = true;
+        let through = &mut self.through;
+        let busy = self.busy.get(&item);
+        for &v in busy.into_iter().flatten() {
+            let mut at = self.vertices[v as usize].links;
+            while at != NONE {
+                let link = &self.links[at as usize];
+                through[link.item as usize] = (serial, v);
+                at = link.next;
+            }
+        }
+        let (mut few, mut tests) = (true, 0);
         self.tree.query(hull, |b| {
             if stamp[b as usize] == serial {
                 return true;
             }
             stamp[b as usize] = serial;
+            tests += 1;
             let other = &items[b as usize];
             // Edges of one colour meet at common vertices only.
             if me.color != 0 && other.color == me.color {
@@ -267,12 +294,66 @@ impl Tracer<'_> {
                 if lo > hi || k.miss(c, d, lo, hi) {
                     return true;
                 }
+                if busy.is_some()
+                    && let (when, v) = through[b as usize]
+                    && when == serial
+                    && k.miss_beside(c, d, lo, hi, self.vertices[v as usize].at.x)
+                {
+                    return true;
+                }
             }
             near.push(b);
             few = near.len() <= most;
             few
         });
+        self.tests += tests;
         few
+    }
+
+    /// Keeps in mind that many items pass through a vertex that knows all its arcs: pairs of them need not be
+    /// asked again what they do there.
+    pub(super) fn remember(&mut self, v: u32) {
+        let x = self.vertices[v as usize].at.x;
+        self.k.exact(x);
+        self.through.resize(self.items.len(), (0, NONE));
+        let mut at = self.vertices[v as usize].links;
+        while at != NONE {
+            let link = self.links[at as usize];
+            self.busy.entry(link.item).or_default().push(v);
+            at = link.next;
+        }
+    }
+
+    /// The remembered vertices inside an item, as hits on a window.
+    fn known_hits(
+        &mut self,
+        item: u32,
+        me: &Item,
+        (first, from): (bool, f64),
+        (last, to): (bool, f64),
+        hits: &mut Vec<Hit>,
+    ) {
+        let Some(vertices) = self.busy.get(&item).cloned() else {
+            return;
+        };
+        for v in vertices {
+            let at = self.vertices[v as usize].at;
+            if matches!(me.carrier, Carrier::Graph(_))
+                && self.find(me.vl) != v
+                && self.find(me.vr) != v
+                && (first || self.k.cmp_double(at.x, from).is_ge())
+                && (last || self.k.cmp_double(at.x, to).is_lt())
+            {
+                hits.push(Hit {
+                    x: at.x,
+                    c: at.c,
+                    other: item,
+                    there: Place::Inside,
+                    cross: NONE,
+                    vertex: v,
+                });
+            }
+        }
     }
 
     /// Finds the stops of a window, in order from low to high.
@@ -294,6 +375,7 @@ impl Tracer<'_> {
                 other: item,
                 there,
                 cross: NONE,
+                vertex: NONE,
             });
         };
         if first {
@@ -302,6 +384,7 @@ impl Tracer<'_> {
         if last {
             end(me.r, high, Place::High);
         }
+        self.known_hits(item, &me, (first, from), (last, to), &mut hits);
         // Arcs on the same curve.
         let mut twins = Vec::new();
         for &b in near {
@@ -325,6 +408,7 @@ impl Tracer<'_> {
                         other: b,
                         there: z.places[usize::from(item < b)],
                         cross,
+                        vertex: z.vertex,
                     });
                 }
             }
@@ -380,12 +464,7 @@ impl Tracer<'_> {
                 Place::High => other.vr,
                 Place::Inside => NONE,
             };
-            let bound = if h.cross == NONE {
-                NONE
-            } else {
-                self.crosses[h.cross as usize].vertex
-            };
-            for w in [end, bound] {
+            for w in [end, h.vertex] {
                 if w != NONE {
                     v = if v == NONE {
                         self.find(w)

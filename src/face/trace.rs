@@ -110,12 +110,20 @@ pub(crate) struct Tracer<'a> {
     pub(super) serial: u32,
     pub(super) mark: Vec<u32>,
     pub(super) mark_serial: u32,
+    /// The vertices of many arcs that an item passes through.
+    pub(super) busy: FastMap<u32, Vec<u32>>,
+    /// Pairs tested for a meeting, and how many may be before the walk is given up.
+    pub(super) tests: u64,
+    pub(super) budget: u64,
     /// Buffers.
+    pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
     pub(super) edges: Vec<Edge>,
     pub(super) cycles: Vec<Cycle>,
+    /// The half-edges in the order walked: twice the edge, one more if against its direction.
+    pub(super) order: Vec<u32>,
     /// Components whose boundary was traced.
     pub(super) touched: Vec<bool>,
     pub(super) unbounded: bool,
@@ -151,11 +159,16 @@ impl<'a> Tracer<'a> {
             serial: 0,
             mark: vec![0; items.len()],
             mark_serial: 0,
+            busy: FastMap::default(),
+            tests: 0,
+            budget: u64::MAX,
+            through: Vec::new(),
             hits: Vec::new(),
             near: Vec::new(),
             numbers: Vec::new(),
             edges: Vec::new(),
             cycles: Vec::new(),
+            order: Vec::new(),
             touched: vec![false; comps.len()],
             unbounded: false,
         };
@@ -242,6 +255,9 @@ impl<'a> Tracer<'a> {
         let vertex = &mut self.vertices[v as usize];
         vertex.germs = from as u32;
         vertex.germ_count = (to - from) as u32;
+        if many {
+            self.remember(v);
+        }
         (from, to)
     }
 
@@ -276,6 +292,9 @@ impl<'a> Tracer<'a> {
         let (mut v, mut g) = (v0, g0);
         let (mut leftmost, mut hole, mut count) = (NONE, false, 0);
         loop {
+            if self.tests > self.budget {
+                return;
+            }
             let Germ {
                 item,
                 dir,
@@ -322,6 +341,7 @@ impl<'a> Tracer<'a> {
             debug_assert!(!*side, "a side of an edge was walked twice");
             *side = true;
             count += 1;
+            self.order.push(2 * edge + u32::from(!dir.forward()));
             let (from, to) = self.germs_of(w);
             let turn = if back == from { to - 1 } else { back - 1 };
             self.germs[turn].open = true;
@@ -366,6 +386,30 @@ impl<'a> Tracer<'a> {
         self.trace(v, to - 1);
     }
 
+    /// Traces the cycle along one side of a vertical that nothing meets between its ends, unless that
+    /// side was traced before: going up with the face on the left, or down.
+    pub(super) fn border(&mut self, item: u32, up: bool) {
+        let leaf = self.leaf_at_end(item, false);
+        let low = self.find(self.stops[leaf.from]);
+        self.germs_of(low);
+        let g = self.germ_along(low, item, Dir::Up);
+        let known = self.germs[g].edge;
+        if known != NONE {
+            let e = &self.edges[known as usize];
+            if if up { e.above } else { e.below } {
+                return;
+            }
+        }
+        if up {
+            self.trace(low, g);
+            return;
+        }
+        let high = self.next_stop(item, low, true);
+        self.germs_of(high);
+        let g = self.germ_along(high, item, Dir::Down);
+        self.trace(high, g);
+    }
+
     /// The point where a component begins.
     pub(super) fn begin_of(&self, comp: u32) -> Point {
         self.vertices[self.comps[comp as usize].vertex as usize].at
@@ -390,6 +434,9 @@ impl<'a> Tracer<'a> {
                 .germ_below(item, from.x, true)
                 .expect("every germ is made when asked for");
             self.trace(v, g);
+            if self.tests > self.budget {
+                return Ok(());
+            }
             let cycle = self.cycles[self.cycles.len() - 1];
             if !cycle.hole {
                 return Ok(());
@@ -594,6 +641,14 @@ fn index(k: &Kernel, items: &mut [Item]) -> Tree {
         }
     }
     Tree::new(entries)
+}
+
+/// A hull of a whole item.
+pub(crate) fn hull_of(k: &Kernel, item: &Item) -> Hull {
+    match item.carrier {
+        Carrier::Graph(c) => k.hull(c, k.enclosure(item.l).0, k.enclosure(item.r).1),
+        Carrier::Vertical(..) => Hull::boxed(box_of(k, item)),
+    }
 }
 
 fn box_of(k: &Kernel, item: &Item) -> Bounds {

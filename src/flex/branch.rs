@@ -9,7 +9,8 @@
 
 use super::model::{Row, Scaffold};
 use super::pairs::Selection;
-use super::shape::{Placed, Pose, double};
+use super::safe::linear;
+use super::shape::{Placed, Pose};
 use super::step::{Corners, Run};
 use crate::certificate::lp::{Claim, verify};
 use crate::lp::{self, Model, Outcome, Status};
@@ -28,6 +29,7 @@ pub(crate) struct Solved {
     pub(crate) direction: Option<Vec<[f64; 3]>>,
     pub(crate) facing: usize,
     pub(crate) programs: usize,
+    pub(crate) exact_pivots: u64,
     pub(crate) verified: Option<bool>,
     pub(crate) certificate: serde_json::Value,
 }
@@ -43,25 +45,20 @@ pub(crate) fn solve(
     let facing = &selection.facing;
     let scaffold = &run.scaffold;
     if run.options.corners == Corners::Average || facing.is_empty() {
-        let model = scaffold.program(rows, poses);
-        let outcome = lp::solve(&model, &run.lp_options());
+        let (model, outcome) = run.program(rows, poses);
         return conclude(run, &model, &outcome, facing.len(), 1, None);
     }
     let choices: Vec<[Row; 4]> = facing
         .iter()
         .map(|f| scaffold.choices(f).map(|p| scaffold.row(&p, placed)))
         .collect();
-    let program = |taken: &[Option<u8>]| {
+    let all = |taken: &[Option<u8>]| -> Vec<Row> {
         let chosen = taken.iter().zip(&choices);
         let more = chosen.filter_map(|(t, four)| t.map(|t| four[t as usize].clone()));
-        let all: Vec<Row> = rows.iter().cloned().chain(more).collect();
-        scaffold.program(&all, poses)
+        rows.iter().cloned().chain(more).collect()
     };
-    let solved = |taken: &[Option<u8>]| {
-        let model = program(taken);
-        let outcome = lp::solve(&model, &run.lp_options());
-        (model, outcome)
-    };
+    let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses);
+    let solved = |taken: &[Option<u8>]| run.program(&all(taken), poses);
     let mut programs = 1;
     let root = vec![None; facing.len()];
     let (model, outcome) = solved(&root);
@@ -86,7 +83,7 @@ pub(crate) fn solve(
             break;
         }
         let direction = directions(scaffold, &outcome);
-        let kept = |row: &Row| activity(scaffold, row, &direction);
+        let kept = |row: &Row| linear(row, &direction);
         // The disjunction that the optimum breaks most.
         let broken = (0..facing.len())
             .filter(|&k| taken[k].is_none())
@@ -154,7 +151,7 @@ pub(crate) fn solve(
                 } else {
                     Status::Undecided
                 },
-                ..lp::solve(&Model::new("flex"), &run.lp_options())
+                ..lp::solve(&Model::new("flex"), &run.lp_options(&[]))
             },
             facing.len(),
             programs,
@@ -187,25 +184,9 @@ fn expand(
     4
 }
 
-/// J q̇ + d₀ of a row in units of distance, as doubles.
-fn activity(scaffold: &Scaffold, row: &Row, direction: &[[f64; 3]]) -> f64 {
-    let (one, two) = (row.pair.line_body as usize, row.pair.point_body as usize);
-    let [nx, ny] = &row.normal;
-    let length = Rat::from(nx * nx + ny * ny).interval().sqrt().hi;
-    let part = |v: &crate::number::Int| double(&Rat::from(v.clone())) / length;
-    let (a, b) = (direction[one], direction[two]);
-    let _ = scaffold;
-    part(nx) * (b[0] - a[0])
-        + part(ny) * (b[1] - a[1])
-        + part(&row.theta1) * a[2]
-        + part(&row.theta2) * b[2]
-        + part(&row.d0)
-}
-
 /// The values of an outcome by body.
 fn directions(scaffold: &Scaffold, outcome: &Outcome) -> Vec<[f64; 3]> {
-    let values = outcome.values.as_deref().unwrap_or(&[]);
-    let at = |c: Option<usize>| c.and_then(|c| values.get(c)).map_or(0.0, double);
+    let at = |c: Option<usize>| c.and_then(|c| outcome.near.get(c)).copied().unwrap_or(0.0);
     (0..scaffold.forms.len())
         .map(|b| scaffold.column(b).map(at))
         .collect()
@@ -235,10 +216,11 @@ fn conclude(
         status: outcome.status,
         objective: outcome.objective.clone().unwrap_or_else(Rat::zero),
         enclosure,
-        direction: (outcome.status == Status::Optimal && outcome.values.is_some())
+        direction: (outcome.status == Status::Optimal && !outcome.near.is_empty())
             .then(|| directions(&run.scaffold, outcome)),
         facing,
         programs,
+        exact_pivots: outcome.exact_pivots,
         verified,
         certificate: report["certificate"].take(),
     }

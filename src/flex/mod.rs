@@ -21,16 +21,21 @@
 mod branch;
 pub mod generate;
 mod model;
+mod motion;
+mod mps;
 mod pairs;
 mod random;
 mod read;
 pub mod report;
+mod safe;
 mod schema;
 mod shape;
 mod step;
 mod types;
 mod write;
 
+pub use motion::{Contact as FirstContact, ProofSize};
+pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
 pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
 pub use schema::structure_schema;

@@ -60,6 +60,22 @@ pub struct StepDocument {
     pub programs: usize,
     /// Convex corners that face each other.
     pub facing: usize,
+    /// Pivots of the exact simplex method.
+    pub exact_pivots: u64,
+    /// On a safe path: what was proven to be free of collision throughout the step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub proof: Option<ProofDocument>,
+}
+
+/// The size of a proof.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ProofDocument {
+    /// Pairs of bodies that may come near each other.
+    pub bodies: usize,
+    /// Vertices against edges.
+    pub pairs: usize,
+    /// Of these, decided in rationals.
+    pub exact: usize,
 }
 
 /// A body's place.
@@ -129,6 +145,12 @@ impl FlexDocument {
                     model_seconds: s.model_seconds,
                     programs: s.programs,
                     facing: s.facing,
+                    exact_pivots: s.exact_pivots,
+                    proof: s.proof.map(|p| ProofDocument {
+                        bodies: p.bodies,
+                        pairs: p.pairs,
+                        exact: p.exact,
+                    }),
                 })
                 .collect(),
             path: structure.step.path.word(),

@@ -13,11 +13,14 @@
 
 use super::branch::{self, Solved};
 use super::model::{Form, Row, Scaffold};
+use super::motion::ProofSize;
 use super::pairs::{Pair, Selection, select};
 use super::shape::{Placed, Pose, double};
-use super::types::Structure;
-use crate::lp::{self, Status};
+use super::types::{Path, Structure};
+use crate::lp::{self, Place, Places, Status};
 use crate::number::{Algebraic, Int, Poly, Rat};
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 /// What facing convex corners become (PF §V-A).
@@ -43,6 +46,8 @@ pub struct FlexOptions<'a> {
     pub time_limit: Option<Duration>,
     /// Whether certificates are checked by the independent verifier.
     pub verify: bool,
+    /// Shown every program before it is solved.
+    pub programs: Option<&'a dyn Fn(&lp::Model)>,
     /// Told of every step as it begins.
     pub progress: Option<&'a dyn Fn(FlexProgress)>,
 }
@@ -105,6 +110,8 @@ pub struct Step {
     pub facing: usize,
     /// Programs solved for this step.
     pub programs: usize,
+    /// Pivots of the exact method, over these programs' last.
+    pub exact_pivots: u64,
     /// Wall-clock time of the step: model, program, search.
     pub seconds: f64,
     /// Part of it that went into pairs and rows.
@@ -113,6 +120,8 @@ pub struct Step {
     pub verified: Option<bool>,
     /// The certificate as JSON; null where there is none.
     pub certificate: serde_json::Value,
+    /// What the proof of a safe step looked at; None where nothing was proven.
+    pub proof: Option<ProofSize>,
     /// Exact gain in displacement.
     pub gain: Rat,
     /// Bits of the longest number of any pose afterwards.
@@ -165,7 +174,24 @@ pub(crate) struct Run<'a> {
     pub(crate) scaffold: Scaffold,
     pub(crate) options: &'a FlexOptions<'a>,
     pub(crate) deadline: Option<Instant>,
-    grain: Grain,
+    /// No vertex is farther from its body's reference point.
+    reach: f64,
+    /// The last optimal basis: places of the columns, and of rows by pair.
+    memory: RefCell<Option<Memory>>,
+}
+
+type Memory = (Vec<Place>, HashMap<Pair, Place>);
+
+/// What a step took.
+struct Taken {
+    model_seconds: f64,
+    rows: usize,
+    pairs: Vec<Pair>,
+    solved: Solved,
+    programs: usize,
+    scale: Rat,
+    next: Option<Vec<Pose>>,
+    proof: Option<ProofSize>,
 }
 
 /// Radii of rounding.
@@ -188,8 +214,8 @@ impl Grain {
     }
 }
 
-/// The least violation that rounding is allowed to make, as a part of the threshold.
-const GRAIN_PART: f64 = 1.0 / 1024.0;
+/// How coarse rounding may be: as a part of the violation allowed, and of a step's promise.
+const GRAIN_PARTS: (f64, f64) = (1.0 / 64.0, 1e-4);
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -204,13 +230,12 @@ impl<'a> Run<'a> {
     pub(crate) fn new(structure: &'a Structure, options: &'a FlexOptions<'a>) -> Run<'a> {
         let scaffold = Scaffold::new(structure);
         let reach = scaffold.shapes.iter().map(|s| s.reach).fold(0.0, f64::max);
-        let gain = double(&structure.step.gain);
-        let grain = (double(&structure.step.violation) * GRAIN_PART).min(gain / 4.0);
         Run {
             structure,
-            grain: Grain::of(grain, reach),
+            reach,
             scaffold,
             options,
+            memory: RefCell::new(None),
             deadline: options
                 .time_limit
                 .and_then(|t| Instant::now().checked_add(t)),
@@ -221,21 +246,48 @@ impl<'a> Run<'a> {
         self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
-    /// What the programs may still take.
-    pub(crate) fn lp_options(&self) -> lp::Options {
+    /// What the program of these rows may still take, and the last basis as its start.
+    pub(crate) fn lp_options(&self, rows: &[Row]) -> lp::Options {
+        let memory = self.memory.borrow();
+        let basis = memory.as_ref().map(|(columns, places)| Places {
+            columns: columns.clone(),
+            // A row that is new is slack until shown otherwise.
+            rows: rows
+                .iter()
+                .map(|r| places.get(&r.pair).copied().unwrap_or(Place::Basic))
+                .collect(),
+        });
         lp::Options {
             method: self.options.method,
             accuracy: self.options.accuracy,
             time_limit: self
                 .deadline
                 .map(|d| d.saturating_duration_since(Instant::now())),
-            memory_limit: None,
-            values: true,
-            basis: None,
+            basis,
+            ..lp::Options::default()
         }
     }
 
-    fn flex(&self) -> Flexed {
+    /// Builds and solves the program of some rows.
+    pub(crate) fn program(&self, rows: &[Row], poses: &[Pose]) -> (lp::Model, lp::Outcome) {
+        let model = self.scaffold.program(rows, poses);
+        if let Some(show) = self.options.programs {
+            show(&model);
+        }
+        let outcome = lp::solve(&model, &self.lp_options(rows));
+        self.remember(rows, &outcome);
+        (model, outcome)
+    }
+
+    /// Keeps an optimal basis for the next program, by the names of the rows.
+    fn remember(&self, rows: &[Row], outcome: &lp::Outcome) {
+        if let (Status::Optimal, Some(basis)) = (outcome.status, &outcome.basis) {
+            let places = rows.iter().map(|r| r.pair).zip(basis.rows.iter().copied());
+            *self.memory.borrow_mut() = Some((basis.columns.clone(), places.collect()));
+        }
+    }
+
+    fn flex(mut self) -> Flexed {
         let rules = &self.structure.step;
         let mut poses = self.scaffold.start.clone();
         let mut out = Flexed {
@@ -258,54 +310,75 @@ impl<'a> Run<'a> {
             }
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
-            let selection = self.selection(&placed, k > 0);
-            let (selected, rows) = self.rows(&selection, &placed);
-            pairs = selected;
-            let model_seconds = begin.elapsed().as_secs_f64();
-            if let Some(tell) = self.options.progress {
-                tell(FlexProgress {
-                    step: k,
-                    bodies: self.scaffold.forms.len(),
-                    rows: rows.len(),
-                    displacement: double(&out.displacement),
-                    gain: last_gain,
+            let taken = if rules.path == Path::Safe {
+                self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
+                let safe = self.safe_step(&poses, &placed, k > 0);
+                Taken {
+                    model_seconds: 0.0,
+                    rows: safe.rows.len(),
+                    pairs: safe.rows.iter().map(|r| r.pair).collect(),
+                    solved: safe.solved,
+                    programs: safe.programs,
+                    scale: safe.scale,
+                    next: safe.next,
+                    proof: safe.proof,
+                }
+            } else {
+                let selection = self.selection(&placed, k > 0);
+                let (pairs, rows) = self.rows(&selection, &placed);
+                let model_seconds = begin.elapsed().as_secs_f64();
+                self.tell(k, &out, last_gain, rows.len());
+                let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
+                let next = solved.direction.as_ref().map(|direction| {
+                    let grain = self.grain(double(&solved.objective));
+                    self.search(&pairs, &poses, direction, grain)
                 });
-            }
-            let solved = branch::solve(self, &rows, &selection, &placed, &poses);
-            let Some(direction) = &solved.direction else {
-                out.ending = match solved.status {
+                let (scale, next) = next.unzip();
+                Taken {
+                    model_seconds,
+                    rows: rows.len(),
+                    pairs,
+                    programs: solved.programs,
+                    solved,
+                    scale: scale.unwrap_or_else(Rat::zero),
+                    next,
+                    proof: None,
+                }
+            };
+            pairs.clone_from(&taken.pairs);
+            let stopped = taken.next.is_none();
+            if stopped {
+                out.ending = match taken.solved.status {
                     Status::Unbounded => Ending::Unbounded,
                     Status::Infeasible => Ending::Infeasible,
                     _ => Ending::Undecided,
                 };
-                self.note(
-                    &mut out,
-                    begin,
-                    model_seconds,
-                    &rows,
-                    &solved,
-                    Rat::zero(),
-                    &poses,
-                );
-                break;
-            };
-            let (scale, next) = self.search(&pairs, &poses, direction);
-            let reached = self.scaffold.displacement(&next);
+            }
+            if let Some(next) = &taken.next {
+                poses.clone_from(next);
+                out.configurations.push(poses.clone());
+            }
+            let reached = self.scaffold.displacement(&poses);
             let gain = &reached - &out.displacement;
             out.displacement = reached;
-            poses = next;
-            out.configurations.push(poses.clone());
-            self.note(
-                &mut out,
-                begin,
-                model_seconds,
-                &rows,
-                &solved,
-                scale,
-                &poses,
-            );
-            if let Some(step) = out.steps.last_mut() {
-                step.gain = gain.clone();
+            out.steps.push(Step {
+                objective: taken.solved.objective,
+                enclosure: taken.solved.enclosure,
+                scale: taken.scale,
+                rows: taken.rows,
+                facing: taken.solved.facing,
+                programs: taken.programs,
+                exact_pivots: taken.solved.exact_pivots,
+                seconds: begin.elapsed().as_secs_f64(),
+                model_seconds: taken.model_seconds,
+                verified: taken.solved.verified,
+                certificate: taken.solved.certificate,
+                proof: taken.proof,
+                gain: gain.clone(),
+                bits: poses.iter().map(Pose::bits).max().unwrap_or(0),
+            });
+            if stopped {
+                break;
             }
             last_gain = double(&gain);
             if gain.abs() < rules.gain {
@@ -321,31 +394,28 @@ impl<'a> Run<'a> {
         out
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn note(
-        &self,
-        out: &mut Flexed,
-        begin: Instant,
-        model_seconds: f64,
-        rows: &[Row],
-        solved: &Solved,
-        scale: Rat,
-        poses: &[Pose],
-    ) {
-        out.steps.push(Step {
-            objective: solved.objective.clone(),
-            enclosure: solved.enclosure.clone(),
-            scale,
-            rows: rows.len(),
-            facing: solved.facing,
-            programs: solved.programs,
-            seconds: begin.elapsed().as_secs_f64(),
-            model_seconds,
-            verified: solved.verified,
-            certificate: solved.certificate.clone(),
-            gain: Rat::zero(),
-            bits: poses.iter().map(Pose::bits).max().unwrap_or(0),
-        });
+    fn tell(&self, step: usize, out: &Flexed, gain: f64, rows: usize) {
+        if let Some(tell) = self.options.progress {
+            tell(FlexProgress {
+                step,
+                bodies: self.scaffold.forms.len(),
+                rows,
+                displacement: double(&out.displacement),
+                gain,
+            });
+        }
+    }
+
+    /// The grain of a step that promises a gain: coarse while there is much to gain, since short
+    /// numbers make quick programs, and at last finer than the gain at which stepping ends.
+    pub(crate) fn grain(&self, promise: f64) -> Grain {
+        let rules = &self.structure.step;
+        let least = double(&rules.gain) / 2.0;
+        let most = double(&rules.violation) * GRAIN_PARTS.0;
+        Grain::of(
+            (promise.abs() * GRAIN_PARTS.1).min(most).max(least),
+            self.reach,
+        )
     }
 
     /// The pairs of a configuration. At the start nothing overlaps; later on a vertex may lie
@@ -371,9 +441,15 @@ impl<'a> Run<'a> {
 
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
-    fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
+    fn search(
+        &self,
+        pairs: &[Pair],
+        poses: &[Pose],
+        direction: &[[f64; 3]],
+        grain: Grain,
+    ) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
-        let at = |scale: f64| self.moved(poses, direction, scale);
+        let at = |scale: f64| self.moved(poses, direction, scale, grain);
         let good = |poses: &[Pose]| !self.exceeds(pairs, &self.scaffold.place(poses), allowed);
         let whole = at(1.0);
         if good(&whole) {
@@ -394,11 +470,17 @@ impl<'a> Run<'a> {
     }
 
     /// The configuration after a direction at a scale, rounded.
-    pub(crate) fn moved(&self, poses: &[Pose], direction: &[[f64; 3]], scale: f64) -> Vec<Pose> {
+    pub(crate) fn moved(
+        &self,
+        poses: &[Pose],
+        direction: &[[f64; 3]],
+        scale: f64,
+        grain: Grain,
+    ) -> Vec<Pose> {
         let each = poses.iter().zip(direction).zip(&self.scaffold.forms);
         each.map(|((pose, d), form)| match form {
             Form::Fixed => pose.clone(),
-            _ => self.grain.advance(pose, d.map(|v| v * scale)),
+            _ => grain.advance(pose, d.map(|v| v * scale)),
         })
         .collect()
     }
@@ -457,6 +539,11 @@ pub(crate) fn violation(row: &Row) -> Rat {
 }
 
 impl Grain {
+    /// The distance that rounding may move a vertex by, roughly.
+    pub(crate) fn distance(&self) -> f64 {
+        2f64.powi(1 - self.place_bits as i32)
+    }
+
     /// A pose moved by (dx, dy, dθ) and rounded. Doubles are good enough for what is rounded
     /// anyway; a motion that is no number leaves the pose as it is.
     pub(crate) fn advance(&self, pose: &Pose, by: [f64; 3]) -> Pose {

@@ -1,5 +1,6 @@
 //! The verbs `lp` and `verify`: arguments in, JSON out, an exit status back.
 
+use super::budget::Meter;
 use super::outcome::Status;
 use super::read::read_model;
 use super::report::{from_json, to_json};
@@ -7,6 +8,7 @@ use super::solve::{Accuracy, Method, Options, solve};
 use crate::certificate::lp::verify;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Bad usage or bad input.
@@ -39,6 +41,9 @@ pub struct LpArgs {
     /// Write the result there instead of standard output
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Show no progress on a terminal
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// `--method`.
@@ -87,8 +92,8 @@ fn bad(message: impl std::fmt::Display) -> u8 {
     BAD
 }
 
-/// Runs `snapfit lp`; the result is the exit status.
-pub fn run_lp(args: &LpArgs) -> u8 {
+/// Runs `snapfit lp`; the result is the exit status. What it is at is noted in `meter`.
+pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>) -> u8 {
     let time_limit = match args.time_limit {
         None => None,
         Some(s) => match Duration::try_from_secs_f64(s) {
@@ -110,6 +115,7 @@ pub fn run_lp(args: &LpArgs) -> u8 {
         memory_limit: args.memory_limit.map(|m| m.saturating_mul(1 << 20)),
         values: args.values,
         basis: None,
+        meter: Some(meter.clone()),
     };
     let name = args.model.to_string_lossy();
     let model = match read(&args.model) {

@@ -22,9 +22,11 @@ mod problem;
 pub mod read;
 mod reconstruct;
 pub mod report;
+mod safe;
 mod simplex;
 mod solve;
 
+pub use budget::Meter;
 pub use model::{Column, Model, Range, Row};
 pub use outcome::{Certificate, Outcome, Place, Places, Status, Vector};
 pub use read::{LpError, read_model};

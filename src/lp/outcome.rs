@@ -189,6 +189,9 @@ pub struct Outcome {
     /// The last basis of the exact method: the optimal one where there is an optimum. None where
     /// that method was not reached.
     pub basis: Option<Places>,
+    /// Values of the columns as doubles, for pictures and directions: those of the exact vertex
+    /// where there is one, else what floating point found. Empty where neither is known.
+    pub near: Vec<f64>,
     /// Values of the columns, where asked for.
     pub values: Option<Vec<Rat>>,
     /// Prices of the rows, where asked for.
@@ -211,6 +214,7 @@ impl Outcome {
             accuracy: "exact",
             certificate: None,
             basis: None,
+            near: Vec::new(),
             values: None,
             prices: None,
             exact_pivots: 0,
@@ -221,7 +225,7 @@ impl Outcome {
 }
 
 /// Bits of vectors up to which a certificate carries them.
-const VECTOR_BITS: u64 = 4_000_000;
+pub(crate) const VECTOR_BITS: u64 = 4_000_000;
 
 /// Turns the exact method's verdict into a result in the model's terms.
 pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) -> Outcome {
@@ -236,6 +240,7 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
         } => {
             let p = frame.problem;
             out.status = Status::Optimal;
+            out.near = near(frame, values);
             let mut terms = Vec::new();
             let mut constant = Int::zero();
             for j in 0..p.n {
@@ -363,8 +368,28 @@ fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
     d * &common
 }
 
+/// Values of the columns as doubles.
+fn near(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vec<f64> {
+    let p = frame.problem;
+    let double = |v: &Rat| v.nearest_f64().unwrap_or(f64::INFINITY);
+    // The scale of the bounds may lie past the double range, and values with it: their quotient
+    // is what counts, so both go by mantissa and exponent.
+    let (scale, exponent) = super::lift::mantissa(&p.bound_scale);
+    (0..p.n)
+        .map(|j| {
+            let v = if frame.basis.status[j] == Resting::Basic {
+                let v = values.approximate(&values.component(frame, j));
+                super::lift::ldexp(v / scale, -exponent)
+            } else {
+                double(&Rat::new(frame.resting_value(j), p.bound_scale.clone()))
+            };
+            v * double(&p.column_scale[j])
+        })
+        .collect()
+}
+
 /// Values of the columns, unscaled.
-fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
+pub(crate) fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
     let p = frame.problem;
     let d = &values.solution.denominator;
     let mut numerators = Vec::new();
@@ -385,7 +410,7 @@ fn point(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vector {
 }
 
 /// Prices of the rows, unscaled; `scale` is that of the costs.
-fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
+pub(crate) fn prices(frame: &Frame<'_>, y: &RowVector, scale: &Int) -> Vector {
     let p: &Problem = frame.problem;
     let denominator = &y.solution.denominator * &scale.abs();
     let sign = Rat::from(i64::from(scale.sign()));

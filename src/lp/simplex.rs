@@ -17,7 +17,7 @@
 //! feasible point that [`run`] may begin with ends in one, after which the primal method keeps it.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
-use super::budget::{Budget, Exhausted};
+use super::budget::{Budget, Exhausted, Stage};
 use super::problem::Problem;
 use crate::number::Int;
 use std::cmp::Ordering;
@@ -56,6 +56,10 @@ impl Verdict<'_> {
     }
 }
 
+/// Is shown every basis that is not the last: its values where they are feasible, its prices.
+/// Ends the run by answering true.
+pub(crate) type Watch<'w> = dyn FnMut(&Frame<'_>, Option<&ColumnVector>, &RowVector) -> bool + 'w;
+
 /// What a run took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Effort {
@@ -84,6 +88,7 @@ pub(crate) fn run<'a>(
     problem: &'a Problem,
     start: Basis,
     blame: Option<usize>,
+    watch: &mut Watch<'_>,
     budget: &Budget,
     effort: &mut Effort,
 ) -> Result<Verdict<'a>, (Exhausted, Basis)> {
@@ -93,6 +98,7 @@ pub(crate) fn run<'a>(
     let mut guesses = [None, None, None];
     let mut seeking = blame;
     loop {
+        budget.report(Stage::Exact, effort.pivots);
         let frame = Frame::new(problem, basis, regular);
         regular = true;
         let before = frame.basis.clone();
@@ -100,6 +106,7 @@ pub(crate) fn run<'a>(
             frame,
             stalled >= PATIENCE,
             &mut seeking,
+            watch,
             &mut guesses,
             budget,
         ) {
@@ -123,6 +130,7 @@ fn step<'a>(
     frame: Frame<'a>,
     bland: bool,
     seeking: &mut Option<usize>,
+    watch: &mut Watch<'_>,
     guesses: &mut Guesses,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
@@ -157,7 +165,13 @@ fn step<'a>(
                 duals,
             })));
         };
+        if watch(&frame, Some(&values), &duals) {
+            return Err(Exhausted);
+        }
         return primal_step(frame, values, breaches, q, sign, guesses, budget);
+    }
+    if watch(&frame, None, &duals) {
+        return Err(Exhausted);
     }
     if improving.is_none() {
         return dual_step(frame, &values, &breaches, &duals, bland, guesses, budget);

@@ -1,14 +1,16 @@
 //! The way from a model to its outcome.
 
-use super::basis::Basis;
-use super::budget::Budget;
+use super::basis::{Basis, ColumnVector, Frame, RowVector};
+use super::budget::{Budget, Meter, Stage};
 use super::float;
 use super::model::Model;
-use super::outcome::{Certificate, Outcome, Places, Status, conclude};
+use super::outcome::{Certificate, Outcome, Places, Status, VECTOR_BITS, conclude, point, prices};
 use super::problem::Problem;
+use super::safe::Known;
 use super::simplex::{self, Effort};
-use crate::number::Rat;
-use std::time::Duration;
+use crate::number::{Int, Rat};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Who finds the basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -25,8 +27,9 @@ pub enum Method {
 pub enum Accuracy {
     /// Nothing: the floating-point result.
     Float,
-    /// A proven rational enclosure of the optimum. At present it is found as for `Exact`, so
-    /// that its width is zero.
+    /// A proven enclosure of the optimum of relative width 10⁻⁹ at most: a rational feasible point
+    /// and rational prices. The exact method ends as soon as it has both, which may be at the
+    /// optimum itself; then the width is zero.
     Bounds,
     /// The optimum itself.
     #[default]
@@ -49,11 +52,17 @@ pub struct Options {
     /// A basis to start from, as [`Outcome::basis`] gives it: that of a similar program saves
     /// most of the work. It need not fit, see [`Places`].
     pub basis: Option<Places>,
+    /// Where to note what the solve is at.
+    pub meter: Option<Arc<Meter>>,
 }
 
 /// Solves a model.
 pub fn solve(model: &Model, options: &Options) -> Outcome {
-    let budget = Budget::new(options.time_limit, options.memory_limit);
+    let budget = Budget::new(
+        options.time_limit,
+        options.memory_limit,
+        options.meter.clone(),
+    );
     let method = match options.method {
         Method::Warm => "warm",
         Method::Exact => "exact",
@@ -69,6 +78,7 @@ pub fn solve(model: &Model, options: &Options) -> Outcome {
 }
 
 fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
+    budget.report(Stage::Scaling, 0);
     let Some(problem) = Problem::new(model) else {
         return Outcome::undecided("the program's integers are too long");
     };
@@ -86,26 +96,69 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let given = options.basis.as_ref().map(|b| b.basis(&problem));
     let mut iterations = 0;
     let mut blame = None;
+    let mut known = Known::default();
+    let mut guess = (Vec::new(), Vec::new());
     let start = if options.method == Method::Warm {
         let proposal = float::propose(&problem, given.as_ref(), budget);
         iterations = proposal.iterations;
         blame = proposal.blame;
+        guess = (proposal.point.clone(), proposal.prices.clone());
         if options.accuracy == Accuracy::Float {
-            return unproven(model, &proposal);
+            return Outcome {
+                near: guess.0,
+                ..unproven(model, &proposal)
+            };
         }
         proposal.basis
     } else {
         given.unwrap_or_else(|| Basis::slack(&problem))
     };
-    let run = simplex::run(&problem, start, blame, budget, &mut effort);
+    if options.accuracy == Accuracy::Bounds && Known::may_guess(model) {
+        known.guess(model, &guess.0, &guess.1);
+        if known.closed() {
+            let mut out = Outcome::undecided("");
+            known.publish(model, &mut out);
+            out.float_iterations = iterations;
+            out.near = guess.0;
+            return out;
+        }
+    }
+    let mut last = (Instant::now(), Duration::ZERO);
+    let mut watch = |frame: &Frame<'_>, values: Option<&ColumnVector>, duals: &RowVector| {
+        let bounds = options.accuracy == Accuracy::Bounds;
+        // Where the vertex is asked for, these are for the case that a limit comes first.
+        if !bounds && last.0.elapsed() < 20 * last.1 {
+            return false;
+        }
+        let start = Instant::now();
+        let bits = |d: &Int| d.bits() * frame.kernel.size() as u64;
+        if let Some(v) = values
+            && bits(&v.solution.denominator) <= VECTOR_BITS
+        {
+            known.point(model, point(frame, v));
+        }
+        if bits(&duals.solution.denominator) <= VECTOR_BITS {
+            known.prices(model, prices(frame, duals, &problem.cost_scale));
+        }
+        last = (Instant::now(), start.elapsed());
+        bounds && known.closed()
+    };
+    let run = simplex::run(&problem, start, blame, &mut watch, budget, &mut effort);
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err((_, last)) => {
             let mut out = Outcome::undecided("a limit was reached");
             out.basis = Some(Places::of(&last, problem.n));
+            if !known.closed() {
+                known.guess(model, &guess.0, &guess.1);
+            }
+            known.publish(model, &mut out);
             out
         }
     };
+    if outcome.near.is_empty() {
+        outcome.near = guess.0;
+    }
     outcome.float_iterations = iterations;
     outcome.exact_pivots = effort.pivots;
     outcome

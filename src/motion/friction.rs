@@ -17,7 +17,7 @@
 //! alone: a line and a quadratic in t (DP eqs. 18–21). Neither needs a normalised normal.
 
 use crate::contact::{Contact, ContactKind, Patch, Trig};
-use crate::kernel::{Instant, Kernel, Polynomial, Position};
+use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
 use crate::number::Scalar;
 use crate::slice::{ArcId, Shape, Slice};
 
@@ -29,43 +29,99 @@ pub fn stick_time<K: Kernel>(
     from: &K::Time,
     mu: &K::Num,
 ) -> Option<K::Time> {
-    if mu.sign() <= 0 {
-        return None;
+    let found = stretches(slice, arc, from, mu, false);
+    found.into_iter().find(|s| s.sticks).map(|s| s.from)
+}
+
+/// A stretch of an arc along which the contact sticks, or slides, throughout.
+#[derive(Clone, Debug)]
+pub struct Stretch<K: Kernel = Filtered> {
+    /// When it begins.
+    pub from: K::Time,
+    /// When it ends.
+    pub to: K::Time,
+    /// Whether friction holds the contact.
+    pub sticks: bool,
+}
+
+/// The sticking and sliding regions of a whole graph or level, in order of time (DP Prop. 9.5): at most
+/// three. One that slides where there is no friction.
+pub fn regions<K: Kernel>(slice: &Slice<K>, arc: ArcId, mu: Option<&K::Num>) -> Vec<Stretch<K>> {
+    let a = slice.arc(arc);
+    let found = match mu {
+        Some(mu) => stretches(slice, arc, &a.start().t, mu, true),
+        None => Vec::new(),
+    };
+    let mut out: Vec<Stretch<K>> = Vec::new();
+    for s in found {
+        match out.last_mut() {
+            Some(l) if l.sticks == s.sticks => l.to = s.to,
+            _ => out.push(s),
+        }
     }
-    let patch = slice.patch(arc)?;
+    debug_assert!(out.len() <= 3, "three regions an arc");
+    if out.is_empty() {
+        out.push(Stretch {
+            from: a.start().t.clone(),
+            to: a.end().t.clone(),
+            sticks: false,
+        });
+    }
+    out
+}
+
+/// What sticks and slides from an instant on; up to the first that sticks unless all are wanted.
+fn stretches<K: Kernel>(
+    slice: &Slice<K>,
+    arc: ArcId,
+    from: &K::Time,
+    mu: &K::Num,
+    all: bool,
+) -> Vec<Stretch<K>> {
+    let Some(patch) = slice.patch(arc).filter(|_| mu.sign() > 0) else {
+        return Vec::new();
+    };
     match patch.contact {
         Contact::Obstacle {
             kind: ContactKind::B,
             ..
-        } => type_b(slice, arc, patch, from, mu),
+        } => type_b(slice, arc, patch, from, mu, all),
         Contact::Obstacle {
             kind: ContactKind::A,
             ..
-        } => type_a(slice, arc, patch, from, mu),
-        Contact::Limit(_) => None,
+        } => type_a(slice, arc, patch, from, mu, all),
+        Contact::Limit(_) => Vec::new(),
     }
 }
 
-/// Walks the gaps between `breaks` from `from` to `end`; the first gap in which `sticks` holds
-/// (tested at one rational time inside) begins the sticking.
+/// Walks the gaps between `breaks` from `from` to `end`; the whether
+/// `sticks` holds in each is tested at one rational time inside.
 fn walk<K: Kernel>(
     from: &K::Time,
     end: &K::Time,
     mut breaks: Vec<K::Time>,
+    all: bool,
     mut sticks: impl FnMut(&K::Num) -> bool,
-) -> Option<K::Time> {
+) -> Vec<Stretch<K>> {
     breaks.retain(|t| t > from && t < end);
     breaks.sort();
     breaks.dedup();
     breaks.push(end.clone());
     let mut begin = from.clone();
+    let mut out = Vec::new();
     for b in breaks {
-        if sticks(&K::Time::between(&begin, &b)) {
-            return Some(begin);
+        let sticks = sticks(&K::Time::between(&begin, &b));
+        out.push(Stretch {
+            from: begin,
+            to: b.clone(),
+            sticks,
+        });
+        if sticks && !all {
+            break;
         }
         begin = b;
     }
-    None
+    out
 }
 
 fn type_b<K: Kernel>(
@@ -74,7 +130,8 @@ fn type_b<K: Kernel>(
     patch: &Patch<K::Num>,
     from: &K::Time,
     mu: &K::Num,
-) -> Option<K::Time> {
+    all: bool,
+) -> Vec<Stretch<K>> {
     let arc = slice.arc(id);
     let v = &slice.frame.v;
     let a = &patch.ends[0].0;
@@ -89,7 +146,11 @@ fn type_b<K: Kernel>(
         (d > 0 && minus > 0 && plus > 0) || (d < 0 && minus < 0 && plus < 0)
     };
     if arc.shape == Shape::Level {
-        return inside(&|p| arc.lo.x.sign_of(p)).then(|| from.clone());
+        return vec![Stretch {
+            from: from.clone(),
+            to: arc.end().t.clone(),
+            sticks: inside(&|p| arc.lo.x.sign_of(p)),
+        }];
     }
     let mut breaks = Vec::new();
     for p in polys.iter().filter(|p| !p.is_zero()) {
@@ -99,7 +160,7 @@ fn type_b<K: Kernel>(
             }
         }
     }
-    walk::<K>(from, &arc.end().t, breaks, |t| {
+    walk::<K>(from, &arc.end().t, breaks, all, |t| {
         slice
             .height_at(arc, t)
             .is_some_and(|x| inside(&|p| x.sign_of(p)))
@@ -112,12 +173,13 @@ fn type_a<K: Kernel>(
     patch: &Patch<K::Num>,
     from: &K::Time,
     mu: &K::Num,
-) -> Option<K::Time> {
+    all: bool,
+) -> Vec<Stretch<K>> {
     let v = &slice.frame.v;
     let w = &patch.ends[0].1 - &slice.frame.p0;
     let e = patch.f0.k.negated();
     if e.is_zero() {
-        return None;
+        return Vec::new();
     }
     let speed2 = v.norm2();
     let m2 = patch.f1.c.square().plus(&patch.f1.s.square()).over(&speed2);
@@ -137,7 +199,7 @@ fn type_a<K: Kernel>(
         .chain(k.roots())
         .map(K::Time::at)
         .collect();
-    walk::<K>(from, &slice.arc(id).end().t, breaks, |t| {
+    walk::<K>(from, &slice.arc(id).end().t, breaks, all, |t| {
         d.sign_at(t) * e.sign() > 0 && k.sign_at(t) > 0
     })
 }

@@ -19,6 +19,10 @@ pub struct Ledger {
 pub struct PhaseCost {
     /// Contact arcs.
     pub arcs: u64,
+    /// Pawls that ran by the sweep; the others scanned all arcs.
+    pub swept: u64,
+    /// Half-edges of the free components that were made.
+    pub half_edges: u64,
     /// Seconds to build the slices.
     pub build: f64,
     /// Seconds to follow the motion.

@@ -1,6 +1,7 @@
 //! The local picture at a point of the cylinder: which arcs meet there, whether the state's
 //! interval survives, and where its near end is just after.
 
+use super::sight::Sight;
 use crate::contact::{Chart, Contact};
 use crate::kernel::{Instant, Kernel, Polynomial, Position};
 use crate::number::Scalar;
@@ -98,10 +99,14 @@ pub(super) enum Next {
 }
 
 /// All arcs that hold a place.
-pub(super) fn incident<K: Kernel>(slice: &Slice<K>, place: &Place<K>) -> Vec<Incident> {
+pub(super) fn incident<K: Kernel>(
+    slice: &Slice<K>,
+    sight: &dyn Sight<K>,
+    place: &Place<K>,
+) -> Vec<Incident> {
     let mut out = Vec::new();
     for (rank, z, half_turn) in place.reps() {
-        for &id in slice.arcs_in(z.chart) {
+        for &id in sight.at(z).iter() {
             let arc = slice.arc(id);
             if arc.is_barrier() && slice.holds(arc, z) {
                 out.push(Incident {
@@ -414,6 +419,7 @@ pub(super) enum Landing {
 /// after its time; `dir` is −1 downward, +1 upward. `skip` holds the arcs at the place itself.
 pub(super) fn snap<K: Kernel>(
     slice: &Slice<K>,
+    sight: &dyn Sight<K>,
     x: &K::Root,
     mut half_turn: i64,
     t: &K::Time,
@@ -426,20 +432,16 @@ pub(super) fn snap<K: Kernel>(
     } else {
         Ordering::Greater
     };
-    let alive: [Vec<ArcId>; 2] = Chart::BOTH.map(|c| {
-        let ids = slice.arcs_in(c).iter().copied();
-        ids.filter(|&id| {
-            let a = slice.arc(id);
-            a.is_barrier() && slice.alive_after(a, t)
-        })
-        .collect()
-    });
     let mut first = true;
     loop {
         let chart = Chart::of_half_turn(half_turn);
         let mut best: Option<ArcId> = None;
-        for &id in &alive[chart.index()] {
+        let from = first.then_some(x);
+        for &id in sight.across(chart, t, from, dir, half_turn == 0).iter() {
             let arc = slice.arc(id);
+            if !arc.is_barrier() || !slice.alive_after(arc, t) {
+                continue;
+            }
             if first {
                 if skip.iter().any(|i| i.arc == id) || slice.cmp_after_const(arc, t, x) != toward {
                     continue;
@@ -465,7 +467,7 @@ pub(super) fn snap<K: Kernel>(
         if let Some(arc) = best {
             return Landing::On { arc, half_turn };
         }
-        if half_turn == 0 || alive.iter().all(Vec::is_empty) {
+        if half_turn == 0 {
             return Landing::Rest;
         }
         half_turn += i64::from(dir);
@@ -474,9 +476,14 @@ pub(super) fn snap<K: Kernel>(
 }
 
 /// The arcs that coincide with `arc` just after t, itself included, by contact.
-pub(super) fn group<K: Kernel>(slice: &Slice<K>, arc: ArcId, t: &K::Time) -> Vec<ArcId> {
-    let mut ids: Vec<ArcId> = slice
-        .arcs_in(slice.arc(arc).chart)
+pub(super) fn group<K: Kernel>(
+    slice: &Slice<K>,
+    sight: &dyn Sight<K>,
+    arc: ArcId,
+    t: &K::Time,
+) -> Vec<ArcId> {
+    let mut ids: Vec<ArcId> = sight
+        .twins(arc)
         .iter()
         .copied()
         .filter(|&b| {

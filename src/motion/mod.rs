@@ -28,10 +28,13 @@ mod local;
 pub mod phase;
 pub mod plan;
 pub mod root;
+mod sight;
+mod sweep;
 pub mod trajectory;
 
 pub use ledger::Ledger;
-pub use plan::{Arithmetic, Options, PlanError, simulate};
+pub use phase::Method;
+pub use plan::{Arithmetic, Options, PlanError, Seen, simulate, slices};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
     Trajectory,

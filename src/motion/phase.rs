@@ -8,12 +8,15 @@ use super::local::{
     Incident, Landing, Next, Place, State, at_rest_next, contacts, group, incident, is_tangency,
     resolve, rests_on_level, right_sorted, settle, snap,
 };
+use super::sight::{All, Sight};
+use super::sweep::Sweep;
 use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
 use crate::contact::{Chart, Contact, ContactKind};
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
 use crate::kernel::{Filtered, Instant, Kernel, Position};
 use crate::number::{Rat, Scalar};
-use crate::slice::{ArcId, Point, Shape, Slice};
+use crate::slice::{ArcId, Configuration, Free, Point, Shape, Slice, Whereabouts};
+use std::rc::Rc;
 
 /// What one pawl's run through a phase yields.
 #[derive(Debug)]
@@ -32,6 +35,10 @@ pub struct Run<K: Kernel = Filtered> {
     pub touching: Vec<Contact>,
     /// Instants at which more arcs met than in general position.
     pub degenerate: u64,
+    /// What ran: the simple algorithm also where the slice cannot be swept.
+    pub method: Method,
+    /// F, where the sweep ran; the first, if it led on into another.
+    pub free: Option<Rc<Free>>,
 }
 
 /// What a pawl's run needs besides the slice.
@@ -50,6 +57,30 @@ pub struct Setting<'a> {
     pub probe: Option<&'a Rat>,
     /// Asked between events; true ends the run undecided.
     pub stop: &'a dyn Fn() -> bool,
+    /// Which arcs are looked at.
+    pub method: Method,
+    /// F of another run through the slice: it is not made again if it holds this run's start too.
+    pub known: Option<Rc<Free>>,
+}
+
+/// Which algorithm runs. Both give the same answers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Method {
+    /// The sweep over the free component (DP §9.2).
+    #[default]
+    Sweep,
+    /// The simple algorithm: every step looks at every arc.
+    Naive,
+}
+
+impl Method {
+    /// The contract's word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Sweep => "sweep",
+            Method::Naive => "naive",
+        }
+    }
 }
 
 struct Runner<'a, K: Kernel> {
@@ -72,8 +103,11 @@ struct Runner<'a, K: Kernel> {
     events: Vec<Event<K>>,
     segments: Vec<Segment<K>>,
     probed: Option<Angle<K>>,
-    /// Where rest is touched: (time, arc), ascending.
-    rest_hits: Vec<K::Time>,
+    /// Which arcs are looked at.
+    sight: Box<dyn Sight<K> + 'a>,
+    /// What ran.
+    method: Method,
+    free: Option<Rc<Free>>,
     degenerate: u64,
 }
 
@@ -86,18 +120,6 @@ pub fn run<K: Kernel>(
     touching: &[Contact],
 ) -> Run<K> {
     let zero = K::Root::of(K::Num::zero());
-    let mut rest_hits = Vec::new();
-    for &id in slice.arcs_in(Chart::Rest) {
-        let arc = slice.arc(id);
-        if arc.is_barrier() && arc.spans_x(&zero) {
-            rest_hits.push(match arc.shape {
-                Shape::Graph { .. } => slice.time_at(arc, &zero),
-                _ => arc.lo.t.clone(),
-            });
-        }
-    }
-    rest_hits.sort();
-    rest_hits.dedup();
     let num = <K::Num as Scalar>::from_rat;
     let origin = K::Time::of(K::Num::zero());
     let mut r = Runner {
@@ -116,7 +138,9 @@ pub fn run<K: Kernel>(
         events: Vec::new(),
         segments: Vec::new(),
         probed: None,
-        rest_hits,
+        sight: Box::new(All::new(slice)),
+        method: Method::Naive,
+        free: None,
         degenerate: 0,
     };
     let stop = r.go(start, touching);
@@ -146,8 +170,16 @@ impl<K: Kernel> Runner<'_, K> {
             t: origin.clone(),
             on: Vec::new(),
         };
-        let inc = incident(self.slice, &Place::new(z.clone(), start.half_turn));
+        let inc = incident(
+            self.slice,
+            &*self.sight,
+            &Place::new(z.clone(), start.half_turn),
+        );
         let next = self.begin(start, &z, &inc, touching);
+        if self.set.method == Method::Sweep && K::CERTIFIED {
+            let seed = self.seed(&next, start, &z, &inc);
+            self.look_from(seed);
+        }
         let entry = Entry {
             inc: &inc,
             tangency: true,
@@ -242,6 +274,91 @@ impl<K: Kernel> Runner<'_, K> {
         settle(slice, Some(near.clone()), side > 0, false)
     }
 
+    /// A point of the state's own interval just after the start.
+    fn seed(
+        &self,
+        next: &Next,
+        start: &Angle<K>,
+        z: &Point<K>,
+        inc: &[Incident],
+    ) -> Option<Spot<K>> {
+        match *next {
+            Next::Rest => self.rest_after(&self.clock),
+            Next::Follow { arc, lower, .. } => self.beside(arc, lower, &self.clock),
+            Next::Snap(dir) => {
+                let place = Place::new(z.clone(), start.half_turn);
+                let right = right_sorted(self.slice, &place, inc);
+                match if dir < 0 { right.first() } else { right.last() } {
+                    Some(near) => self.beside(near.arc, dir > 0, &self.clock),
+                    None => Some(self.ahead(z)),
+                }
+            }
+            Next::Fork { .. } | Next::Jam { .. } => None,
+        }
+    }
+
+    /// A point of the interval that holds rest, or borders it, just after an instant.
+    fn rest_after(&self, at: &K::Time) -> Option<Spot<K>> {
+        let slice = self.slice;
+        let lies = |&id: &ArcId| {
+            let arc = slice.arc(id);
+            arc.shape == Shape::Level
+                && arc.is_barrier()
+                && arc.lo.x.sign() == 0
+                && slice.alive_after(arc, at)
+        };
+        if let Some(level) = slice.arcs_in(Chart::Rest).iter().copied().find(lies) {
+            return [true, false]
+                .into_iter()
+                .filter_map(|above| self.beside(level, above, at))
+                .find(|p| self.free_at(p.clone()));
+        }
+        let soon = self.within_phase(at, at.shift(&K::Num::one()));
+        let next = All::new(slice).next_touch(at).filter(|n| *n < soon);
+        let t = K::Time::between(at, &next.unwrap_or(soon));
+        Some((Chart::Rest, K::Num::zero(), t))
+    }
+
+    /// Looks through F of a point, where there is one.
+    fn look_from(&mut self, at: Option<Spot<K>>) {
+        let free = at.and_then(|(chart, x, t)| {
+            let (x, t) = (x.to_rat(), t.to_rat());
+            let at = Configuration { chart, x, t };
+            let known = self.free.iter().chain(&self.set.known);
+            match known
+                .into_iter()
+                .find(|f| f.locate(&at) == Whereabouts::Inside)
+            {
+                Some(f) => Some(f.clone()),
+                None => Free::new(self.slice, &at).map(Rc::new),
+            }
+        });
+        match free {
+            Some(free) => {
+                self.free.get_or_insert_with(|| free.clone());
+                self.sight = Box::new(Sweep::new(self.slice, free));
+                self.method = Method::Sweep;
+            }
+            None => {
+                self.sight = Box::new(All::new(self.slice));
+                self.method = Method::Naive;
+            }
+        }
+    }
+
+    /// The state has left F through a point: looks through the component that it has come to.
+    fn look_again(&mut self, at: &K::Time) {
+        let seed = match self.state {
+            State::On { arc, lower, .. } => self.beside(arc, lower, at),
+            State::Rest => self.rest_after(at),
+        };
+        self.look_from(seed);
+        if !self.sight.entered(self.state, at) {
+            debug_assert!(false, "the state borders the component made for it");
+            self.look_from(None);
+        }
+    }
+
     fn no_interval(&self, inc: &[Incident]) -> Next {
         let arcs: Vec<ArcId> = inc.iter().map(|i| i.arc).collect();
         let wall = |i: &Incident| i.germs.up || i.germs.down;
@@ -253,6 +370,12 @@ impl<K: Kernel> Runner<'_, K> {
     /// Whether the side of an arc is free just after `from`: by one polygon test at a rational
     /// point beside it, before anything meets the arc.
     fn free_beside(&self, id: ArcId, above: bool, from: &K::Time) -> bool {
+        self.beside(id, above, from)
+            .is_some_and(|p| self.free_at(p))
+    }
+
+    /// A rational point beside an arc just after `from`, before anything meets the arc.
+    fn beside(&self, id: ArcId, above: bool, from: &K::Time) -> Option<Spot<K>> {
         let slice = self.slice;
         let arc = slice.arc(id);
         let mut until = self.within_phase(from, arc.end().t.clone());
@@ -264,10 +387,8 @@ impl<K: Kernel> Runner<'_, K> {
             }
         }
         let t = K::Time::between(from, &until);
-        match slice.height_at(arc, &t) {
-            Some(x) => self.free_near(arc.chart, &x, &t, above),
-            None => false,
-        }
+        let x = slice.height_at(arc, &t)?;
+        Some(self.near(arc.chart, &x, &t, above))
     }
 
     /// `until`, but not past the phase's end: what can only be met after it was never made.
@@ -285,10 +406,10 @@ impl<K: Kernel> Runner<'_, K> {
         match self.state {
             State::On { arc, lower, .. } => self.free_beside(arc, lower, at),
             State::Rest => {
-                let next = self.rest_hits.iter().find(|t| *t > at);
+                let next = self.sight.next_touch(at);
                 let soon = self.within_phase(at, at.shift(&K::Num::one()));
-                let t = K::Time::between(at, next.filter(|n| **n < soon).unwrap_or(&soon));
-                self.free_at(Chart::Rest, &K::Num::zero(), &t)
+                let t = K::Time::between(at, &next.filter(|n| *n < soon).unwrap_or(soon));
+                self.clear_at(Chart::Rest, &K::Num::zero(), &t)
             }
         }
     }
@@ -296,6 +417,12 @@ impl<K: Kernel> Runner<'_, K> {
     /// Whether the configuration is free just after the start along the horizontal through z,
     /// where no arc leaves z to the right.
     fn free_along(&self, z: &Point<K>) -> bool {
+        self.free_at(self.ahead(z))
+    }
+
+    /// A rational point just after the start along the horizontal through z, where no arc leaves z to the
+    /// right.
+    fn ahead(&self, z: &Point<K>) -> Spot<K> {
         let slice = self.slice;
         let mut until = self.within_phase(&self.clock, K::Time::of(K::Num::one()));
         for &b in slice.arcs_in(z.chart) {
@@ -311,12 +438,11 @@ impl<K: Kernel> Runner<'_, K> {
                 until = t;
             }
         }
-        self.free_near(z.chart, &z.x, &K::Time::between(&self.clock, &until), true)
+        self.near(z.chart, &z.x, &K::Time::between(&self.clock, &until), true)
     }
 
-    /// The polygon test at time t and an orientation just above (or below) x, nearer than any
-    /// other arc at that time.
-    fn free_near(&self, chart: Chart, x: &K::Root, t: &K::Num, above: bool) -> bool {
+    /// Time t and an orientation just above (or below) x, nearer than any other arc at that time.
+    fn near(&self, chart: Chart, x: &K::Root, t: &K::Num, above: bool) -> Spot<K> {
         let slice = self.slice;
         let seam = K::Root::of(K::side(above));
         let mut bound = seam;
@@ -336,9 +462,14 @@ impl<K: Kernel> Runner<'_, K> {
         if bound == *x {
             // At the seam itself: look from the other chart.
             let x = K::Root::of(K::side(!above));
-            return self.free_near(chart.other(), &x, t, above);
+            return self.near(chart.other(), &x, t, above);
         }
-        let at = K::Root::between(x, &bound);
+        (chart, K::Root::between(x, &bound), t.clone())
+    }
+
+    /// Whether a rational point is free: between the stops, and the pawl's interior clear of every
+    /// obstacle's.
+    fn free_at(&self, (chart, at, t): Spot<K>) -> bool {
         if let Some((lo, hi)) = &self.limits {
             let angle: Angle<K> = Angle {
                 half_turn: chart.index() as i64,
@@ -358,11 +489,11 @@ impl<K: Kernel> Runner<'_, K> {
                 return false;
             }
         }
-        self.free_at(chart, &at, t)
+        self.clear_at(chart, &at, &t)
     }
 
     /// Whether the pawl's interior is clear of every obstacle's at a rational time and position.
-    fn free_at(&self, chart: Chart, at: &K::Num, t: &K::Num) -> bool {
+    fn clear_at(&self, chart: Chart, at: &K::Num, t: &K::Num) -> bool {
         // Exact for the numbers given, also where those are doubles.
         let (at, t) = (&at.to_rat(), &t.to_rat());
         let exact = |p: &Vec2<K::Num>| Vec2::new(p.x.to_rat(), p.y.to_rat());
@@ -394,11 +525,8 @@ impl<K: Kernel> Runner<'_, K> {
     fn step(&mut self, last: &mut Angle<K>) -> Option<Stop<K>> {
         let (z, half_turn) = match self.state {
             State::Rest => {
-                let hit = self
-                    .rest_hits
-                    .iter()
-                    .find(|t| **t > self.clock && **t <= self.end);
-                let hit = hit.cloned();
+                let hit = self.sight.next_touch(&self.clock);
+                let hit = hit.filter(|t| *t <= self.end);
                 self.probe(hit.as_ref());
                 let Some(t) = hit else {
                     return Some(self.complete(Angle::rest()));
@@ -443,7 +571,7 @@ impl<K: Kernel> Runner<'_, K> {
             State::Rest => false,
         };
         let place = Place::new(z, half_turn);
-        let inc = incident(self.slice, &place);
+        let inc = incident(self.slice, &*self.sight, &place);
         self.degenerate += u64::from(is_degenerate(self.slice, &inc));
         let free = |arc: ArcId, above: bool| self.free_beside(arc, above, &at);
         let next = resolve(self.slice, &place, &inc, self.state, at_rest, &free);
@@ -511,7 +639,7 @@ impl<K: Kernel> Runner<'_, K> {
                 &mut until,
             );
         }
-        for &b in slice.arcs_in(arc.chart) {
+        for &b in self.sight.along(arc.chart).iter() {
             if b != id
                 && slice.arc(b).is_barrier()
                 && let Some(p) = slice.first_meeting(id, b, &self.clock, &until)
@@ -522,7 +650,7 @@ impl<K: Kernel> Runner<'_, K> {
         if arc.shape == Shape::Level && arc.lo.x.cmp_num(&K::side(false)).is_eq() {
             // On the seam: what comes from below lives in the other chart.
             let one = K::Num::one();
-            for &b in slice.arcs_in(arc.chart.other()) {
+            for &b in self.sight.along(arc.chart.other()).iter() {
                 let other = slice.arc(b);
                 if other.is_barrier() && other.hi.x.cmp_num(&one).is_eq() {
                     let t = other.hi.t.clone();
@@ -632,6 +760,9 @@ impl<K: Kernel> Runner<'_, K> {
             Next::Fork { up, down } => self.fork(up, down, &angle, at, last),
         };
         self.clock = at.clone();
+        if stop.is_none() && !self.sight.entered(self.state, at) {
+            self.look_again(at);
+        }
         debug_assert!(
             !K::CERTIFIED || stop.is_some() || last || self.holds_after(at),
             "the state's interval is free"
@@ -669,7 +800,7 @@ impl<K: Kernel> Runner<'_, K> {
         entry: &Entry<'_>,
     ) -> Option<Stop<K>> {
         let slice = self.slice;
-        let arcs = group(slice, arc, at);
+        let arcs = group(slice, &*self.sight, arc, at);
         let first = arcs.first().copied().unwrap_or(arc);
         let (old, new) = (contacts(slice, &self.held), contacts(slice, &arcs));
         let same = self.same_constraint(first, &arcs);
@@ -768,7 +899,15 @@ impl<K: Kernel> Runner<'_, K> {
     ) -> Option<Stop<K>> {
         let slice = self.slice;
         let released = contacts(slice, &self.held);
-        let landing = snap(slice, &angle.x, angle.half_turn, at, dir, entry.inc);
+        let landing = snap(
+            slice,
+            &*self.sight,
+            &angle.x,
+            angle.half_turn,
+            at,
+            dir,
+            entry.inc,
+        );
         let (to, target) = match landing {
             Landing::Rest => (Angle::rest(), None),
             Landing::On { arc, half_turn } => (
@@ -794,7 +933,7 @@ impl<K: Kernel> Runner<'_, K> {
             self.state = State::Rest;
             return None;
         };
-        self.held = group(slice, arc, at);
+        self.held = group(slice, &*self.sight, arc, at);
         let first = self.held.first().copied().unwrap_or(arc);
         self.state = State::On {
             arc: first,
@@ -822,7 +961,7 @@ impl<K: Kernel> Runner<'_, K> {
         let slice = self.slice;
         let mut branches = Vec::new();
         for (direction, arc) in [(1, up), (-1, down)] {
-            let arcs = group(slice, arc, at);
+            let arcs = group(slice, &*self.sight, arc, at);
             let first = arcs.first().copied().unwrap_or(arc);
             let sticks = self
                 .friction
@@ -937,7 +1076,7 @@ impl<K: Kernel> Runner<'_, K> {
                 t: self.end.clone(),
                 on,
             };
-            let inc = incident(self.slice, &Place::new(z, angle.half_turn));
+            let inc = incident(self.slice, &*self.sight, &Place::new(z, angle.half_turn));
             let arcs: Vec<ArcId> = inc.iter().map(|i| i.arc).collect();
             touching = contacts(self.slice, &arcs);
         }
@@ -963,6 +1102,8 @@ impl<K: Kernel> Runner<'_, K> {
             probed,
             touching,
             degenerate: self.degenerate,
+            method: self.method,
+            free: self.free,
         }
     }
 }
@@ -995,6 +1136,9 @@ fn is_degenerate<K: Kernel>(slice: &Slice<K>, inc: &[Incident]) -> bool {
         };
     inc.len() > 2 || inc.iter().any(|a| inc.iter().any(|b| flush(a, b)))
 }
+
+/// A rational point of the cylinder in the kernel's numbers: chart, position, time.
+type Spot<K> = (Chart, <K as Kernel>::Num, <K as Kernel>::Num);
 
 /// How an instant was reached.
 struct Entry<'a> {

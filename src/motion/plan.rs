@@ -1,7 +1,7 @@
 //! Plans: phases one after the other, all pawls and the root together.
 
 use super::ledger::{Ledger, PhaseCost};
-use super::phase::{Run, Setting, run};
+use super::phase::{Method, Run, Setting, run};
 use super::root::{first_collision, obstacle_polygon};
 use super::trajectory::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
@@ -15,7 +15,7 @@ use crate::kernel::{
 use crate::number::filter::{counts, reset_bits, with_filter};
 use crate::number::{Rat, Scalar};
 use crate::scene::{Motion, Scene};
-use crate::slice::Slice;
+use crate::slice::{Free, Slice};
 use std::time::Instant;
 
 /// How a simulation is to run.
@@ -27,6 +27,8 @@ pub struct Options<'a> {
     pub progress: Option<&'a dyn Fn(Progress)>,
     /// Which numbers decide.
     pub arithmetic: Arithmetic,
+    /// Which algorithm runs.
+    pub method: Method,
 }
 
 /// Which numbers decide.
@@ -48,6 +50,16 @@ impl Arithmetic {
             Arithmetic::Filtered => "filtered",
             Arithmetic::Exact => "exact",
             Arithmetic::F64(_) => "f64",
+        }
+    }
+}
+
+impl Method {
+    /// What runs under an arithmetic: doubles cannot vouch for F, so they scan.
+    pub fn under(self, arithmetic: &Arithmetic) -> Method {
+        match arithmetic {
+            Arithmetic::F64(_) => Method::Naive,
+            _ => self,
         }
     }
 }
@@ -103,19 +115,48 @@ impl std::error::Error for PlanError {}
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn simulate(scene: &Scene, options: &Options<'_>) -> Result<Trajectory, PlanError> {
     match &options.arithmetic {
-        Arithmetic::Filtered => simulate_with::<Filtered>(scene, options),
-        Arithmetic::Exact => {
-            with_filter(false, || simulate_with::<Exact>(scene, options)).map(Trajectory::published)
-        }
-        Arithmetic::F64(float) => {
-            with_float(float, || simulate_with::<Float>(scene, options)).map(Trajectory::published)
-        }
+        Arithmetic::Filtered => simulate_with::<Filtered>(scene, options, &mut |_| {}),
+        Arithmetic::Exact => with_filter(false, || {
+            simulate_with::<Exact>(scene, options, &mut |_| {})
+        })
+        .map(Trajectory::published),
+        Arithmetic::F64(float) => with_float(float, || {
+            simulate_with::<Float>(scene, options, &mut |_| {})
+        })
+        .map(Trajectory::published),
     }
+}
+
+/// One pawl's slice of one phase, as a simulation met it.
+pub struct Seen<K: Kernel = Filtered> {
+    /// Index of the phase.
+    pub phase: usize,
+    /// Index of the pawl.
+    pub pawl: usize,
+    /// The slice.
+    pub slice: Slice<K>,
+    /// F, where the sweep ran and the pawl had an interval to be in.
+    pub free: Option<std::rc::Rc<Free>>,
+    /// The pawl's orientation at the start of the phase.
+    pub start: Angle<K>,
+}
+
+/// Simulates a scene in the filtered arithmetic and shows every slice on the way.
+///
+/// # Errors
+/// [`PlanError`] where the plan asks for what cannot be.
+pub fn slices(
+    scene: &Scene,
+    options: &Options<'_>,
+    see: &mut dyn FnMut(Seen),
+) -> Result<Trajectory, PlanError> {
+    simulate_with::<Filtered>(scene, options, see)
 }
 
 fn simulate_with<K: Kernel>(
     scene: &Scene,
     options: &Options<'_>,
+    see: &mut dyn FnMut(Seen<K>),
 ) -> Result<Trajectory<K>, PlanError> {
     let num = <K::Num as Scalar>::from_rat;
     reset_bits();
@@ -194,10 +235,23 @@ fn simulate_with<K: Kernel>(
                 phase: index,
                 probe: plan.collision.as_ref().map(|c| &c.0),
                 stop: &stop,
+                method: options.method,
+                known: None,
             };
             let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
             cost.run += clock.elapsed().as_secs_f64();
+            if let Some(r) = runs.last() {
+                cost.swept += u64::from(r.method == Method::Sweep);
+                cost.half_edges += r.free.as_ref().map_or(0, |f| f.half_edges() as u64);
+                see(Seen {
+                    phase: index,
+                    pawl: i,
+                    slice,
+                    free: r.free.clone(),
+                    start: angles[i].clone(),
+                });
+            }
         }
         ledger.phases.push(cost);
         ledger.degenerate_events += runs.iter().map(|r| r.degenerate).sum::<u64>();

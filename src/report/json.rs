@@ -334,6 +334,12 @@ pub fn result_schema() -> Schema {
     schema
 }
 
+/// A contact by the names of the scene.
+pub(super) fn named_contact(scene: &Scene, contact: &Contact) -> ContactDocument {
+    let numbers = Numbers::new(&[]);
+    Writer { scene, numbers }.contact(contact)
+}
+
 struct Writer<'a> {
     scene: &'a Scene,
     numbers: Numbers<'a>,
@@ -475,9 +481,16 @@ impl Writer<'_> {
 }
 
 fn tan_half(o: Orientation) -> TanHalf {
-    match o.tan_half {
-        Some(n) => TanHalf::Finite(n),
-        None => TanHalf::Infinite(Infinity::Infinity),
+    o.tan_half.into()
+}
+
+impl From<Option<Num>> for TanHalf {
+    /// None is an infinite one.
+    fn from(n: Option<Num>) -> TanHalf {
+        match n {
+            Some(n) => TanHalf::Finite(n),
+            None => TanHalf::Infinite(Infinity::Infinity),
+        }
     }
 }
 

@@ -46,6 +46,10 @@ pub struct PredicatesDocument {
 pub struct PhaseCostDocument {
     /// Contact arcs.
     pub arcs: u64,
+    /// Pawls that ran by the sweep; the others scanned all arcs.
+    pub swept: u64,
+    /// Half-edges of the free components that were made.
+    pub half_edges: u64,
     /// Seconds to build the slices.
     pub build_seconds: f64,
     /// Seconds to follow the motion.
@@ -71,6 +75,8 @@ impl LedgerDocument {
                 .iter()
                 .map(|p| PhaseCostDocument {
                     arcs: p.arcs,
+                    swept: p.swept,
+                    half_edges: p.half_edges,
                     build_seconds: p.build,
                     run_seconds: p.run,
                 })

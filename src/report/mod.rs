@@ -6,13 +6,14 @@
 //! the only one that computes in doubles, since an eye cannot tell.
 
 pub mod json;
-pub mod ledger;
 mod layout;
+pub mod ledger;
 mod num;
 pub mod picture;
+pub mod slice;
 pub mod summary;
 pub(crate) mod theta;
-mod words;
+pub(crate) mod words;
 
 pub use layout::pretty;
 pub use num::{Exact, Num};

@@ -7,7 +7,7 @@ use super::json::{
 use super::num::{Exact, Num};
 
 /// A double to so many significant digits, without trailing zeros.
-pub(super) fn digits(x: f64, significant: usize) -> String {
+pub(crate) fn digits(x: f64, significant: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 {
             "0".to_owned()
@@ -41,13 +41,13 @@ fn minus(text: &str) -> String {
 }
 
 /// θ in degrees.
-pub(super) fn degrees(theta: f64) -> String {
+pub(crate) fn degrees(theta: f64) -> String {
     let rounded = format!("{:.2}", theta.to_degrees());
     minus(if rounded == "-0.00" { "0.00" } else { &rounded }) + "°"
 }
 
 /// A number in a sentence: exactly if that is short, else to six digits.
-pub(super) fn short(n: &Num) -> String {
+pub(crate) fn short(n: &Num) -> String {
     match &n.exact {
         Some(Exact::Rational { rational }) if rational.len() <= 7 => minus(rational),
         _ => format!("≈{}", approx(n)),
@@ -63,7 +63,7 @@ fn equals(n: &Num) -> String {
 }
 
 /// A number to six digits.
-pub(super) fn approx(n: &Num) -> String {
+pub(crate) fn approx(n: &Num) -> String {
     match n.value {
         Some(x) => digits(x, 6),
         None => "past the double range".to_owned(),
@@ -71,7 +71,7 @@ pub(super) fn approx(n: &Num) -> String {
 }
 
 /// What a number exactly is, in a few columns.
-pub(super) fn exactly(n: &Num) -> String {
+pub(crate) fn exactly(n: &Num) -> String {
     match &n.exact {
         None => String::new(),
         Some(Exact::Rational { rational }) if rational.len() <= 15 => minus(rational),
@@ -110,7 +110,7 @@ fn polynomial_text(coefficients: &[String]) -> Option<String> {
 }
 
 /// A pawl's contact, seen from the pawl.
-pub(super) fn contact(c: &ContactDocument) -> String {
+pub(crate) fn contact(c: &ContactDocument) -> String {
     match c {
         ContactDocument::B {
             pawl_vertex,

@@ -13,9 +13,13 @@
 
 mod arc;
 mod build;
+mod free;
 mod predicates;
+mod strip;
 
 pub use crate::kernel::Time;
 pub use arc::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
 pub use build::Slice;
+pub use free::{Configuration, Free, FreeEdge, FreeVertex, Interval, Touch, Whereabouts};
 pub use predicates::{Cross, Germs, Point, cmp_horizontal};
+pub use strip::Owner;

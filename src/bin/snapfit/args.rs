@@ -31,6 +31,8 @@ pub(crate) enum Verb {
     Forces(Forces),
     /// Draw the mechanism at its events, and its angles over time
     Render(Render),
+    /// The free component that holds the start: its boundary, exactly, and questions to it
+    Slice(crate::slice::SliceArgs),
     /// The face of bare arcs that holds the start
     Face(snapfit::face::Args),
     /// Flex a structure of loosely joined bodies as far as it goes (PuzzleFlex)
@@ -77,6 +79,16 @@ pub(crate) struct Classify {
     /// total- before it, unless it is total too
     #[arg(long, value_name = "CLASS")]
     pub(crate) expect: Option<String>,
+    /// Draw the motion that decides (the escape, where there is one) and, where every direction is
+    /// asked for, the rose of directions, as SVG to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// Where a way out was found: write the scene with it appended to its plan, as TOML to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) escape: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]
@@ -86,8 +98,17 @@ pub(crate) struct Forces {
     #[command(flatten)]
     pub(crate) engine: Engine,
     /// Significant digits of every enclosure
-    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) digits: u32,
+    /// Instants of each phase at which the histories are given
+    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=10000))]
+    pub(crate) samples: u32,
+    /// Draw force over travel as SVG, to PATH
+    #[arg(long, value_name = "PATH")]
+    pub(crate) svg: Option<PathBuf>,
+    /// What to print [default: summary on a terminal, else json]
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
 }
 
 #[derive(Args)]
@@ -108,6 +129,17 @@ pub(crate) struct Render {
     /// Draw as SVG, to PATH or to standard output
     #[arg(long, value_name = "PATH", num_args = 0..=1, default_missing_value = "-")]
     pub(crate) svg: Option<PathBuf>,
+    /// Draw a slice of configuration space instead: the free component and the way through it
+    #[arg(long)]
+    pub(crate) slice: bool,
+    #[command(flatten)]
+    pub(crate) which: crate::slice::Which,
+    /// Of a structure: so many pictures of its way, PATH with a number before its ending
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(crate) frames: Option<u32>,
+    /// Of a structure: how much is proven of every linear program
+    #[arg(long, value_enum, default_value = "exact")]
+    pub(crate) accuracy: crate::flex::Accuracy,
 }
 
 #[derive(Args)]
@@ -150,7 +182,7 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "num")]
     pub(crate) backend: Backend,
     /// Which algorithm runs
-    #[arg(long, value_enum, default_value = "naive")]
+    #[arg(long, value_enum, default_value = "sweep")]
     pub(crate) method: Method,
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -203,10 +235,10 @@ pub(crate) enum Backend {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
-    /// Every step looks at every arc
-    Naive,
-    /// A sweep over the free component (not built yet)
+    /// A sweep over the free component; with f64 every step looks at every arc
     Sweep,
+    /// Every step looks at every arc; the same answers
+    Naive,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -225,4 +257,8 @@ pub(crate) enum Name {
     Structure,
     /// The result of `simulate`
     Result,
+    /// The result of `classify`
+    Classify,
+    /// The result of `forces`
+    Forces,
 }

@@ -28,6 +28,9 @@ pub(crate) struct FlexArgs {
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
+    /// Write every linear program into a directory, as step0.mps and so on
+    #[arg(long, value_name = "DIR")]
+    programs: Option<PathBuf>,
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
@@ -50,13 +53,23 @@ pub(crate) struct GenerateArgs {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Accuracy {
+pub(crate) enum Accuracy {
     /// Nothing is proven
     Float,
     /// A rational enclosure of every optimum
     Bounds,
     /// Every optimum itself
     Exact,
+}
+
+impl Accuracy {
+    pub(crate) fn level(self) -> lp::Accuracy {
+        match self {
+            Accuracy::Float => lp::Accuracy::Float,
+            Accuracy::Bounds => lp::Accuracy::Bounds,
+            Accuracy::Exact => lp::Accuracy::Exact,
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -75,7 +88,7 @@ enum PathArg {
     Safe,
 }
 
-fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
+pub(crate) fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
     let overrides = crate::overrides(common)?;
     let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
     if !common.quiet {
@@ -117,7 +130,17 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         Accuracy::Bounds => (lp::Accuracy::Bounds, "bounds"),
         Accuracy::Exact => (lp::Accuracy::Exact, "exact"),
     };
+    let count = std::cell::Cell::new(0u32);
+    let write = |model: &lp::Model| {
+        if let Some(dir) = &args.programs {
+            let path = dir.join(format!("step{}.mps", count.replace(count.get() + 1)));
+            if let Err(e) = output::write(Some(&path), &flex::to_mps(model)) {
+                let _ = writeln!(std::io::stderr(), "snapfit: {e}");
+            }
+        }
+    };
     let options = FlexOptions {
+        programs: Some(&write),
         accuracy,
         method: lp::Method::Warm,
         corners: match args.corners {

@@ -6,17 +6,18 @@
 
 mod args;
 mod flex;
+mod flex_apps;
+mod flex_render;
 mod output;
 mod progress;
+mod slice;
 mod trade;
+mod verdict;
 
-use args::{
-    Arithmetic, Check, Classify, Cli, Common, Engine, Forces, Format, Method, Name, Render,
-    Simulate, Verb,
-};
+use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render, Simulate, Verb};
 use clap::Parser;
 use clap::error::ErrorKind;
-use snapfit::analysis::{self, Ask, Verdict};
+use snapfit::analysis;
 use snapfit::kernel::{FloatOptions, Identify};
 use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
@@ -62,10 +63,11 @@ fn main() -> ExitCode {
 fn run(verb: &Verb) -> Result<u8, Failure> {
     match verb {
         Verb::Simulate(args) => run_simulate(args),
-        Verb::Classify(args) => run_classify(args),
-        Verb::Forces(args) => run_forces(args),
+        Verb::Classify(args) => verdict::run_classify(args),
+        Verb::Forces(args) => verdict::run_forces(args),
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
+        Verb::Slice(args) => slice::run_slice(args),
         Verb::Face(args) => {
             let report = snapfit::face::run_cli(args)?;
             let text = serde_json::to_string(&report).map_err(|e| e.to_string())?;
@@ -74,7 +76,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         }
         Verb::Flex(args) => flex::run_flex(args),
         Verb::Generate(args) => flex::run_generate(args),
-        Verb::Lp(args) => Ok(snapfit::lp::cli::run_lp(args)),
+        Verb::Lp(args) => Ok(progress::solving(args)),
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
         Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
@@ -82,6 +84,8 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
                 Name::Scene => scene::scene_schema(),
                 Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
+                Name::Classify => analysis::classify_schema(),
+                Name::Forces => analysis::forces_schema(),
             };
             let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
             output::write(args.out.as_deref(), &(pretty(&compact, 100) + "\n"))?;
@@ -99,65 +103,6 @@ fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
     };
     output::write(args.common.out.as_deref(), &text)?;
     Ok(status(&trajectory))
-}
-
-fn ask(engine: &Engine) -> Result<Ask, Failure> {
-    provenance(engine)?;
-    Ok(Ask {
-        deadline: engine
-            .time_limit
-            .and_then(|limit| Instant::now().checked_add(limit)),
-        critical: true,
-    })
-}
-
-fn run_classify(args: &Classify) -> Result<u8, Failure> {
-    let expected = match &args.expect {
-        None => None,
-        Some(word) => {
-            let class = word.strip_prefix("total-").unwrap_or(word);
-            let class = Verdict::from_name(class).ok_or_else(|| {
-                format!("--expect {word}: expected none, force, friction, kinematic, or total- and one of them")
-            })?;
-            Some((class.name(), word.starts_with("total-")))
-        }
-    };
-    let file = read(&args.common)?;
-    let document = analysis::classify(file.scene(), &ask(&args.engine)?)
-        .map_err(|error| misplanned(&file, &error))?;
-    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
-    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
-    if document.undecided() {
-        return Ok(UNDECIDED);
-    }
-    match expected {
-        Some((class, total))
-            if document.class != Some(class) || total && document.extent != Some("total") =>
-        {
-            let extent = document.extent.unwrap_or("no");
-            let class = document.class.unwrap_or("no class");
-            let _ = writeln!(
-                std::io::stderr(),
-                "snapfit: not as expected: {class}, {extent} diode; {}",
-                document.reason
-            );
-            Ok(UNEXPECTED)
-        }
-        _ => Ok(DECIDED),
-    }
-}
-
-fn run_forces(args: &Forces) -> Result<u8, Failure> {
-    let file = read(&args.common)?;
-    let document = analysis::forces(file.scene(), args.digits, &ask(&args.engine)?)
-        .map_err(|error| misplanned(&file, &error))?;
-    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
-    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
-    Ok(if document.outcome == OutcomeKind::Undecided.name() {
-        UNDECIDED
-    } else {
-        DECIDED
-    })
 }
 
 fn run_check(args: &Check) -> Result<u8, Failure> {
@@ -192,7 +137,14 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
     };
     output::spare_input(&args.common.file, to)?;
-    let file = read(&args.common)?;
+    let (name, bytes) = read_bytes(&args.common)?;
+    if snapfit::flex::is_structure(&name, &bytes) {
+        return flex_render::run_render(args, &name, &bytes, to);
+    }
+    let file = parse(&args.common, &name, &bytes)?;
+    if args.slice {
+        return slice::run_render(args, &file, to);
+    }
     let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
     output::write(to, &picture::svg(file.scene(), &document))?;
     Ok(status(&trajectory))
@@ -257,15 +209,20 @@ fn simulated(
         }
     };
     let options = Options {
-        deadline: engine
-            .time_limit
-            .and_then(|limit| Instant::now().checked_add(limit)),
+        deadline: deadline(engine),
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
+        method: method(engine),
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
     Ok((trajectory, document))
+}
+
+/// When to give up.
+fn deadline(engine: &Engine) -> Option<Instant> {
+    let limit = engine.time_limit?;
+    Instant::now().checked_add(limit)
 }
 
 /// A plan that the engine found impossible, placed in the file.
@@ -291,14 +248,19 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     if !snapfit::number::set_backend(backend) {
         return Err(unbuilt("backend", backend.name(), "num"));
     }
-    match engine.method {
-        Method::Naive => {}
-        Method::Sweep => return Err(unbuilt("method", "sweep", "naive")),
-    }
+    let arithmetic = arithmetic(engine);
     Ok(Provenance {
-        arithmetic: arithmetic(engine).name(),
-        method: "naive",
+        arithmetic: arithmetic.name(),
+        method: method(engine).under(&arithmetic).name(),
     })
+}
+
+/// The algorithm that the options ask for.
+fn method(engine: &Engine) -> motion::Method {
+    match engine.method {
+        Method::Sweep => motion::Method::Sweep,
+        Method::Naive => motion::Method::Naive,
+    }
 }
 
 /// The arithmetic that the options ask for.

@@ -1,7 +1,11 @@
 //! A spinner on standard error for work that takes a while.
 
 use indicatif::{ProgressBar, ProgressStyle};
+use snapfit::lp::Meter;
+use snapfit::lp::cli::{LpArgs, run_lp};
 use snapfit::motion::plan::Progress;
+use std::io::IsTerminal;
+use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -58,6 +62,29 @@ impl Spinner {
             let _ = news.send(text);
         }
     }
+}
+
+/// Runs the verb `lp` with a spinner that follows what it is at.
+pub(crate) fn solving(args: &LpArgs) -> u8 {
+    let meter = Arc::new(Meter::default());
+    if args.quiet || !std::io::stderr().is_terminal() {
+        return run_lp(args, &meter);
+    }
+    let spinner = Spinner::start();
+    let (done, ending) = channel::<()>();
+    let news = spinner.news.clone();
+    let watched = meter.clone();
+    let follower = std::thread::spawn(move || {
+        while let Err(RecvTimeoutError::Timeout) = ending.recv_timeout(PATIENCE / 2) {
+            if let Some(news) = &news {
+                let _ = news.send(watched.line());
+            }
+        }
+    });
+    let status = run_lp(args, &meter);
+    drop(done);
+    let _ = follower.join();
+    status
 }
 
 impl Drop for Spinner {

@@ -6,7 +6,7 @@
 
 use super::engine::{Ending, Engine, PIVOT};
 use crate::lp::basis::Status;
-use crate::lp::budget::{Budget, Exhausted};
+use crate::lp::budget::{Budget, Exhausted, Stage};
 
 /// Infeasibility that is no accident of rounding.
 const CLEAR: f64 = 1e-6;
@@ -63,6 +63,7 @@ impl Engine<'_> {
                 self.compute_values();
                 self.compute_reduced();
                 budget.check()?;
+                budget.report(Stage::Simplex, self.iterations);
             }
             count += 1;
             if count > 50 * (total as u64 + 1000) || self.iterations > self.most {

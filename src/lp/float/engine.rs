@@ -324,6 +324,15 @@ impl<'a> Engine<'a> {
         pairs.map(|(c, x)| c * x).sum()
     }
 
+    /// Prices of the rows for the program's own costs.
+    pub(crate) fn prices(&mut self) -> Vec<f64> {
+        let costs = &self.program.cost;
+        let cost = |&v: &usize| costs.get(v).copied().unwrap_or(0.0);
+        let mut y: Vec<f64> = self.head.iter().map(cost).collect();
+        self.btran(&mut y);
+        y
+    }
+
     /// How far a basic variable is outside: negative below, positive above.
     pub(crate) fn excess(&self, v: usize) -> f64 {
         let x = self.x[v];

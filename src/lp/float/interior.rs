@@ -8,7 +8,7 @@
 use super::engine::{Engine, rest};
 use super::program::Program;
 use crate::lp::basis::Status;
-use crate::lp::budget::Budget;
+use crate::lp::budget::{Budget, Stage};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
@@ -20,6 +20,7 @@ const BOUND_NOISE: f64 = 1e-6;
 
 /// For every variable of `direct` how clearly it is off its bounds at the optimum.
 pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<Vec<f64>> {
+    budget.report(Stage::Interior, 0);
     let p = direct;
     let total = p.n + p.m;
     let mut random = Engine::slack(p);

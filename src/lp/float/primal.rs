@@ -3,7 +3,7 @@
 
 use super::engine::{Ending, Engine, PIVOT};
 use crate::lp::basis::Status;
-use crate::lp::budget::{Budget, Exhausted};
+use crate::lp::budget::{Budget, Exhausted, Stage};
 
 /// Infeasibility at which the method has lost its way.
 const LOST: f64 = 1e-2;
@@ -28,6 +28,7 @@ impl Engine<'_> {
                 self.compute_values();
                 self.compute_reduced();
                 budget.check()?;
+                budget.report(Stage::Simplex, self.iterations);
                 if self.infeasibility() > LOST {
                     return Ok(Ending::Optimal); // the dual method's turn
                 }

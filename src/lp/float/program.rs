@@ -62,6 +62,8 @@ pub(crate) struct Program {
     pub(crate) cost: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,
+    /// Powers of two by which columns and rows are scaled; those of the problem it is the dual of.
+    pub(crate) exponents: Vec<i64>,
     /// Whether this is the dual of the problem it was made from.
     pub(crate) dualised: bool,
 }
@@ -135,6 +137,7 @@ impl Program {
             cost,
             lower,
             upper,
+            exponents,
             dualised: false,
         }
     }
@@ -195,6 +198,7 @@ impl Program {
             cost,
             lower,
             upper,
+            exponents: self.exponents.clone(),
             dualised: true,
         })
     }
@@ -232,6 +236,27 @@ impl Program {
         };
         let rows = (0..p.m).map(|i| flip(p.n + i, i));
         rows.chain((0..p.n).map(|j| flip(j, self.n + j))).collect()
+    }
+
+    /// Values of the model's columns and prices of its rows, from those of this program's columns
+    /// and rows.
+    pub(crate) fn unscaled(&self, p: &Problem, x: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (x, y): (Vec<f64>, Vec<f64>) = if self.dualised {
+            (y.iter().map(|v| -v).collect(), x.to_vec())
+        } else {
+            (x.to_vec(), y.to_vec())
+        };
+        let size = |v: &crate::number::Rat| v.nearest_f64().unwrap_or(f64::NAN);
+        let turn = f64::from(p.cost_scale.sign());
+        let columns = x.iter().enumerate();
+        let rows = y.iter().enumerate();
+        (
+            columns
+                .map(|(j, v)| ldexp(v * size(&p.column_scale[j]), self.exponents[j]))
+                .collect(),
+            rows.map(|(i, v)| ldexp(turn * v * size(&p.row_scale[i]), self.exponents[p.n + i]))
+                .collect(),
+        )
     }
 
     /// The column of a variable: entries of a column, or −1 for a logical.

@@ -17,6 +17,9 @@ pub(crate) struct Proposal {
     pub(crate) ending: Ending,
     /// Where the program seemed infeasible, the basic variable that cannot be repaired.
     pub(crate) blame: Option<usize>,
+    /// Values of the model's columns, prices of its rows; to be taken for what they are.
+    pub(crate) point: Vec<f64>,
+    pub(crate) prices: Vec<f64>,
     /// The objective as minimised, without the model's constant.
     pub(crate) objective: f64,
 }
@@ -39,7 +42,8 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
         };
     let mut iterations = 0;
     let mut best: Option<(Vec<Status>, Ending, f64, Option<usize>)> = None;
-    let mut take = |engine: &Engine<'_>, ending: Result<Ending, Exhausted>| {
+    let mut point = (Vec::new(), Vec::new());
+    let mut take = |engine: &mut Engine<'_>, ending: Result<Ending, Exhausted>| {
         iterations += engine.iterations;
         let ending = ending.unwrap_or(Ending::Stuck);
         if best.is_none() || ending != Ending::Stuck {
@@ -49,6 +53,8 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
                 engine.objective(),
                 engine.blame,
             ));
+            let prices = engine.prices();
+            point = program.unscaled(problem, &engine.x[..program.n], &prices);
         }
         ending != Ending::Stuck
     };
@@ -66,7 +72,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
         // A start that needs more than this was none.
         engine.most = 500 + program.m as u64 / 2;
         let ending = engine.optimise(false, budget);
-        done = take(&engine, ending);
+        done = take(&mut engine, ending);
     }
     if !done
         && large
@@ -74,13 +80,13 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     {
         engine.most = program.m as u64 + 1000;
         let ending = engine.optimise(false, budget);
-        done = take(&engine, ending);
+        done = take(&mut engine, ending);
     }
     if !done {
         let mut engine = Engine::slack(&program);
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(true, budget);
-        done = take(&engine, ending);
+        done = take(&mut engine, ending);
     }
     if !done
         && !large
@@ -88,7 +94,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     {
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(false, budget);
-        take(&engine, ending);
+        take(&mut engine, ending);
     }
     let (status, ending, objective, blame) = best.unwrap_or_else(|| {
         (
@@ -101,6 +107,8 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     Proposal {
         basis: program.basis(problem, &status),
         iterations,
+        point: point.0,
+        prices: point.1,
         blame: blame.filter(|_| ending == Ending::Infeasible && !program.dualised),
         ending: match ending {
             // What the dual says of the dual.

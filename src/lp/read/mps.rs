@@ -4,14 +4,19 @@
 //! blank in it), the fixed columns of the old cards are used. The first free row is the
 //! objective, further free rows are left out. Only the first right-hand side, range and bound
 //! set count. A negative upper bound on a column whose lower bound was not given makes that
-//! lower bound −∞. A right-hand side of the objective is remembered but not added: see
+//! lower bound −∞. An upper bound of exactly 10³⁰ and a lower one of exactly −10³⁰ are infinite,
+//! as writers of this format have meant it since its time and readers take it (Clp, QSopt,
+//! and those whose infinity begins at 10²⁰); any other number is that number. A right-hand side of the objective is remembered but not added: see
 //! [`Model::ignored_rhs`].
 
 use super::{At, clip, number};
 use crate::lp::model::{Column, Model, Range, Row};
-use crate::number::Rat;
-use std::collections::HashMap;
-use std::collections::HashSet;
+use crate::number::{Int, Rat};
+use std::collections::{HashMap, HashSet};
+use std::sync::LazyLock;
+
+/// The bound that stands for none.
+static INFINITY: LazyLock<Rat> = LazyLock::new(|| Rat::from(Int::from(10i64).pow(30)));
 
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Section {
@@ -418,7 +423,12 @@ impl<'a> Reader<'a> {
                 (Some(_), _) => {
                     return Err((offset, format!("bound {kind} cannot be {}", clip(text))));
                 }
-                (None, _) => Some(number(text).map_err(|m| (offset, m))?),
+                (None, _) => {
+                    let v = number(text).map_err(|m| (offset, m))?;
+                    let sign = if matches!(kind, "UP" | "UI") { 1 } else { -1 };
+                    let means_infinity = kind != "FX" && v.sign() == sign && v.abs() == *INFINITY;
+                    (!means_infinity).then_some(v)
+                }
             });
         }
         let range = &mut self.model.columns[index].range;

@@ -8,13 +8,17 @@
 mod names;
 mod panels;
 mod plot;
+mod slice;
 mod stage;
+mod structure;
 pub(crate) mod svg;
 
 use super::json::ResultDocument;
 use super::words::{headline, reason};
 use crate::scene::Scene;
+pub use slice::{SlicePicture, slice_svg};
 use stage::Stage;
+pub use structure::{StructurePicture, structure_svg};
 use svg::{INK, MUTED, Svg, text_width};
 
 /// Width of the page; its height follows.

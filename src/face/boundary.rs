@@ -1,0 +1,142 @@
+//! The boundary of a face as something to walk on, and faces that are glued along a cut.
+//!
+//! The idea: a cylinder that is cut open is a strip of the plane, and its two cut lines are pairs of
+//! verticals that are one. The face of the start is traced in the strip; wherever it borders a stretch of the
+//! cut, the face beyond the partner stretch belongs to it too, so that one is traced from there, until no
+//! stretch is left. Then the islands are looked for once, in all of these faces. Each side of an
+//! edge is walked once whatever the order, and the index over the arcs is made once.
+//!
+//! What comes out names each edge's arc, the ends of its stretch, the sides on which the face lies, the
+//! half-edges in the order of the walk, and all arcs through each vertex, those hidden behind others too.
+
+use super::kernel::{CurveId, Kernel, NumId};
+use super::merge::arcs_alone;
+use super::read::{SourceArc, Upright};
+use super::run::{FaceError, graph, upright};
+use super::trace::{Carrier, OnArc, Point, Tracer};
+use crate::number::Rat;
+
+/// Two verticals that are the two sides of one stretch of a cut: the one on the left border of the strip
+/// and the one on its right border, by their numbers among the uprights. Nothing but ends of arcs may
+/// lie on them.
+pub(crate) type Glue = (usize, usize);
+
+/// An edge of the boundary.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoundaryEdge {
+    /// The arc that it is part of: graphs first, then uprights. Of arcs that overlap, the first.
+    pub(crate) item: u32,
+    /// Its left (or lower) and right (or upper) end, as vertices.
+    pub(crate) ends: [u32; 2],
+    /// Whether the face lies above (left of the way from the first end to the second) and below.
+    pub(crate) sides: [bool; 2],
+}
+
+/// The boundary of a face, or of several that are glued.
+pub(crate) struct Boundary {
+    /// Whatever is to be known of the numbers and curves.
+    pub(crate) kernel: Kernel,
+    /// For each vertex its number and a curve over it.
+    pub(crate) vertices: Vec<(NumId, CurveId)>,
+    /// For each vertex the arcs through it: `links[starts[v]..starts[v + 1]]`.
+    pub(crate) links: Vec<u32>,
+    pub(crate) link_starts: Vec<u32>,
+    pub(crate) edges: Vec<BoundaryEdge>,
+    /// The curve of each arc; none for uprights.
+    pub(crate) curves: Vec<Option<CurveId>>,
+    /// Half-edges cycle by cycle, as walked with the face on the left: twice the edge, one more if it
+    /// goes from the second end to the first.
+    pub(crate) order: Vec<u32>,
+    /// Where each cycle begins in `order`, and where the last one ends.
+    pub(crate) cycles: Vec<u32>,
+}
+
+/// The boundary of the face that holds the start, with all that is glued to it.
+///
+/// O(n log n) for the index, then in proportion to what the walk meets.
+pub(crate) fn boundary(
+    arcs: &[SourceArc],
+    uprights: &[Upright],
+    start: &(Rat, Rat),
+    glue: &[Glue],
+) -> Result<Boundary, FaceError> {
+    let bad = |i: usize| move |why| FaceError::BadArc(i, 0, why);
+    let mut k = Kernel::default();
+    let mut items = Vec::with_capacity(arcs.len() + uprights.len());
+    for (i, arc) in arcs.iter().enumerate() {
+        items.push(graph(&mut k, arc, i).map_err(bad(i))?);
+    }
+    for (i, arc) in uprights.iter().enumerate() {
+        let i = arcs.len() + i;
+        items.push(upright(&mut k, arc, i).map_err(bad(i))?);
+    }
+    let curves = items
+        .iter()
+        .map(|i| match i.carrier {
+            Carrier::Graph(c) => Some(c),
+            Carrier::Vertical(..) => None,
+        })
+        .collect();
+    let start = Point {
+        x: k.rational(&start.0),
+        c: k.constant(&start.1),
+    };
+    let (mut items, comps, ends) = arcs_alone(&items);
+    let mut t = Tracer::new(&mut k, &mut items, &comps, ends.into_iter());
+    t.outline(start)
+        .map_err(|OnArc(i)| FaceError::StartOnArc(i as usize, 0))?;
+    let mut partner = vec![None; uprights.len()];
+    for &(left, right) in glue {
+        // Beyond the left border the strip goes on to the left of its right border, and vice versa.
+        partner[left] = Some((arcs.len() + right, true));
+        partner[right] = Some((arcs.len() + left, false));
+    }
+    let mut at = 0;
+    while at < t.edges.len() {
+        let item = t.edges[at].item as usize;
+        if let Some(Some((other, up))) = item.checked_sub(arcs.len()).map(|i| partner[i]) {
+            t.border(other as u32, up);
+        }
+        at += 1;
+    }
+    t.islands();
+    let mut number = vec![u32::MAX; t.vertices.len()];
+    let mut vertices = Vec::new();
+    let (mut links, mut link_starts) = (Vec::new(), vec![0]);
+    let mut edges = Vec::with_capacity(t.edges.len());
+    for e in &t.edges {
+        let ends = [e.low, e.high].map(|v| {
+            let id = &mut number[v as usize];
+            if *id == u32::MAX {
+                *id = vertices.len() as u32;
+                let at = t.vertices[v as usize].at;
+                vertices.push((at.x, at.c));
+                t.each_link(v, |item| links.push(item));
+                link_starts.push(links.len() as u32);
+            }
+            *id
+        });
+        edges.push(BoundaryEdge {
+            item: e.item,
+            ends,
+            sides: [e.above, e.below],
+        });
+    }
+    let order = std::mem::take(&mut t.order);
+    let mut cycles = vec![0];
+    let mut sum = 0;
+    for c in &t.cycles {
+        sum += c.half_edges;
+        cycles.push(sum);
+    }
+    Ok(Boundary {
+        kernel: k,
+        vertices,
+        links,
+        link_starts,
+        edges,
+        curves,
+        order,
+        cycles,
+    })
+}

@@ -1,0 +1,90 @@
+//! What the runner can see: the one thing in which the two methods differ.
+//!
+//! The rules of motion are stated once (`phase.rs`, `local.rs`); to apply them the runner needs arcs to look at:
+//! which may meet the one it follows, which hold a point, which stand in the way of a snap. A [`Sight`]
+//! names candidates, and the exact questions are then asked of these alone. [`All`] names every
+//! arc there is: DP's simple algorithm, O(n) a step. The sweep's sight (`sweep.rs`) names those
+//! that the boundary of F has at the place, O(1) a step. A sight that names too many costs time only;
+//! so equal results mean that F named enough.
+
+use super::local::State;
+use crate::contact::Chart;
+use crate::kernel::{Kernel, Position};
+use crate::number::Scalar;
+use crate::slice::{ArcId, Point, Shape, Slice};
+use std::borrow::Cow;
+
+/// Candidates, in ascending order of arc.
+pub(super) type Arcs<'s> = Cow<'s, [ArcId]>;
+
+/// Which arcs may matter.
+pub(super) trait Sight<K: Kernel> {
+    /// Those of a chart that may be the next to meet the arc that the state follows.
+    fn along(&self, chart: Chart) -> Arcs<'_>;
+    /// Those that may hold a point.
+    fn at(&self, z: &Point<K>) -> Arcs<'_>;
+    /// Those of a chart that may stand in the way of a snap just after t, from x (or the chart's end)
+    /// towards rest (or the chart's other end), downwards or upwards.
+    fn across(
+        &self,
+        chart: Chart,
+        t: &K::Time,
+        x: Option<&K::Root>,
+        dir: i32,
+        to_rest: bool,
+    ) -> Arcs<'_>;
+    /// Those that may coincide with an arc.
+    fn twins(&self, arc: ArcId) -> Arcs<'_>;
+    /// The next instant after one at which rest may be touched.
+    fn next_touch(&self, after: &K::Time) -> Option<K::Time>;
+    /// The state has changed, at an instant. False if this sight cannot see it from there on.
+    fn entered(&self, state: State, at: &K::Time) -> bool;
+}
+
+/// Every arc there is.
+pub(super) struct All<'a, K: Kernel> {
+    slice: &'a Slice<K>,
+    /// When rest is touched, ascending.
+    touches: Vec<K::Time>,
+}
+
+impl<'a, K: Kernel> All<'a, K> {
+    pub(super) fn new(slice: &'a Slice<K>) -> All<'a, K> {
+        let zero = K::Root::of(K::Num::zero());
+        let mut touches = Vec::new();
+        for &id in slice.arcs_in(Chart::Rest) {
+            let arc = slice.arc(id);
+            if arc.is_barrier() && arc.spans_x(&zero) {
+                touches.push(match arc.shape {
+                    Shape::Graph { .. } => slice.time_at(arc, &zero),
+                    _ => arc.lo.t.clone(),
+                });
+            }
+        }
+        touches.sort();
+        touches.dedup();
+        All { slice, touches }
+    }
+}
+
+impl<K: Kernel> Sight<K> for All<'_, K> {
+    fn along(&self, chart: Chart) -> Arcs<'_> {
+        Cow::Borrowed(self.slice.arcs_in(chart))
+    }
+    fn at(&self, z: &Point<K>) -> Arcs<'_> {
+        Cow::Borrowed(self.slice.arcs_in(z.chart))
+    }
+    fn across(&self, chart: Chart, _: &K::Time, _: Option<&K::Root>, _: i32, _: bool) -> Arcs<'_> {
+        Cow::Borrowed(self.slice.arcs_in(chart))
+    }
+    fn twins(&self, arc: ArcId) -> Arcs<'_> {
+        Cow::Borrowed(self.slice.arcs_in(self.slice.arc(arc).chart))
+    }
+    fn next_touch(&self, after: &K::Time) -> Option<K::Time> {
+        let i = self.touches.partition_point(|t| t <= after);
+        self.touches.get(i).cloned()
+    }
+    fn entered(&self, _: State, _: &K::Time) -> bool {
+        true
+    }
+}
