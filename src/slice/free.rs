@@ -811,6 +811,11 @@ impl Free {
                     (Owner::End, _) => {
                         at_end.extend_from_slice(self.arcs_at(e.low));
                         at_end.extend_from_slice(self.arcs_at(e.high));
+                        for v in [e.low, e.high] {
+                            if self.vertices[v as usize].side == 0 {
+                                found.push((self.duration.clone(), i, Some(v)));
+                            }
+                        }
                     }
                     (Owner::Arc(a), Shape::Level) => {
                         for v in [e.low, e.high] {
