@@ -65,7 +65,9 @@ const TOOTH: &str = include_str!("tooth.arcs");
 /// A long rack: the tooth again and again, 5/8 of a time unit apart. A tooth moved along the path by d moves its
 /// arcs by d in t, exactly: P becomes P + d·Q.
 fn rack(n: usize) -> Vec<SourceArc> {
-    let tooth = ArcFile::parse(TOOTH).expect("the tooth is well formed").arcs;
+    let tooth = ArcFile::parse(TOOTH)
+        .expect("the tooth is well formed")
+        .arcs;
     let (up, down) = (5i64, 8i64);
     (0..n)
         .map(|i| {
@@ -100,7 +102,10 @@ fn lattice(n: usize) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
     let (mut arcs, mut plain) = (Vec::new(), Vec::new());
     let steep = 700 * n as i64;
     for i in 0..n as i64 {
-        let (c, s) = ((i / 2) * 1000 + below(100), if i % 2 == 0 { steep } else { -steep });
+        let (c, s) = (
+            (i / 2) * 1000 + below(100),
+            if i % 2 == 0 { steep } else { -steep },
+        );
         let (a, b) = (-1000 + below(99), 1000 + below(99));
         arcs.push(SourceArc {
             p: [Int::from(c), Int::from(s), Int::zero()],
@@ -124,7 +129,11 @@ fn crossings(lines: &[[i64; 4]]) -> u64 {
             if bottom == 0 {
                 continue;
             }
-            let (top, bottom) = if bottom < 0 { (-top, -bottom) } else { (top, bottom) };
+            let (top, bottom) = if bottom < 0 {
+                (-top, -bottom)
+            } else {
+                (top, bottom)
+            };
             let (a, b) = (l[2].max(m[2]), l[3].min(m[3]));
             count += u64::from(a * bottom <= top * 1000 && top * 1000 <= b * bottom);
         }
@@ -138,7 +147,9 @@ fn sizes(from: usize, factor: usize, most: usize) -> impl Iterator<Item = usize>
 
 fn racks(most: usize) {
     println!("\n# Long racks: F is near-linear");
-    println!("lambda(n)/n for arcs that meet at most four times is about 2^alpha(n), and alpha(n) <= 4 here");
+    println!(
+        "lambda(n)/n for arcs that meet at most four times is about 2^alpha(n), and alpha(n) <= 4 here"
+    );
     println!("method      n     |F|    |F|/n  us/arc   peak MB");
     let start = (Rat::frac(1, 7), Rat::frac(-1, 3));
     for method in [Method::Merge, Method::Walk] {
@@ -193,7 +204,9 @@ fn lattices(most: usize) {
 }
 
 fn degenerate() {
-    println!("\n# Degenerate sets: microseconds per (half-edge + arc), over those of the generic set");
+    println!(
+        "\n# Degenerate sets: microseconds per (half-edge + arc), over those of the generic set"
+    );
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data/arcs");
     let mut base = None;
     for name in [
@@ -232,7 +245,8 @@ fn degenerate() {
 /// A rack of `teeth` below the path of `pawls` equal pawls, and another of `far` teeth out of reach, which is part
 /// of the same obstacle (the file's one polygon goes down to it).
 fn scene(teeth: usize, far: usize, pawls: usize) -> String {
-    let mut text = String::from("[scene]\nname = \"rack\"\n[[obstacle]]\nname = \"R\"\nvertices = [");
+    let mut text =
+        String::from("[scene]\nname = \"rack\"\n[[obstacle]]\nname = \"R\"\nvertices = [");
     let mut at = |x: f64, y: f64| {
         let _ = write!(text, "[\"{x}\", \"{y}\"],");
     };
@@ -256,7 +270,10 @@ fn scene(teeth: usize, far: usize, pawls: usize) -> String {
              vertices = [[\"-2\", \"2\"], [\"-2\", \"0.3\"], [\"-2.3\", \"0.3\"]]\nstiffness = \"1\""
         );
     }
-    let _ = writeln!(text, "[[motion]]\nvelocity = [\"1\", \"0\"]\nduration = \"{teeth}\"");
+    let _ = writeln!(
+        text,
+        "[[motion]]\nvelocity = [\"1\", \"0\"]\nduration = \"{teeth}\""
+    );
     text
 }
 
@@ -295,7 +312,10 @@ fn scenes() {
             simulated(&scene(teeth, 0, 1)),
             simulated(&scene(teeth, 99 * teeth, 1)),
         );
-        println!("{teeth} teeth and 99 times as many out of reach: {:.2} x", with / near);
+        println!(
+            "{teeth} teeth and 99 times as many out of reach: {:.2} x",
+            with / near
+        );
     }
 }
 

@@ -198,10 +198,6 @@ impl Kernel {
 
     /// Whether the two surely meet nowhere over [lo, hi] but at x, where they do.
     pub(crate) fn miss_beside(&self, c: CurveId, d: CurveId, lo: f64, hi: f64, x: NumId) -> bool {
-        let at = self.enclosure(x);
-        if at.0 <= lo && hi <= at.1 {
-            return true;
-        }
         let (c, d) = (c.min(d), c.max(d));
         let mut g = self.diff(c, d);
         let Some(mut n) = (0..5).rev().find(|&k| g[k].sign() != Some(0)) else {

@@ -167,31 +167,16 @@ impl Kernel {
             self.unite(x, y);
             return Ordering::Equal;
         }
-        // Cells first where the coefficients are large, for then a gcd costs more than they do.
-        let large = self.large(x) || self.large(y);
-        if large {
-            let order = self.fine(x).clone().cmp(self.fine(y));
-            if order.is_ne() {
-                return order;
-            }
+        let order = self.fine(x).clone().cmp(self.fine(y));
+        if order.is_ne() {
+            return order;
         }
         let (a, b) = (self.exact(x).clone(), self.exact(y).clone());
-        if a == b {
+        let order = a.cmp(&b);
+        if order.is_eq() {
             self.unite(x, y);
-            return Ordering::Equal;
         }
-        if !large {
-            let order = self.fine(x).clone().cmp(self.fine(y));
-            if order.is_ne() {
-                return order;
-            }
-        }
-        a.cmp(&b)
-    }
-
-    /// Whether a number is a crossing of curves past machine words.
-    fn large(&self, x: NumId) -> bool {
-        matches!(self.nums[x as usize].def, Def::Cross(c, d) if self.diff_small(c, d).is_none())
+        order
     }
 
     /// The equation of low degree that a number is known to satisfy, in machine words.
@@ -207,6 +192,10 @@ impl Kernel {
         let Def::Cross(c, d) = self.nums[y as usize].def else {
             return false;
         };
+        if self.exact.contains_key(&y) {
+            // Its enclosure may hold other roots.
+            return false;
+        }
         let (a, b) = (self.enclosure(x), self.enclosure(y));
         // x is a root of h in the enclosure that holds only one.
         a.0 >= b.0
@@ -233,57 +222,12 @@ impl Kernel {
     /// floor(x·2^FINE), made once.
     fn fine(&mut self, x: NumId) -> &Int {
         if !self.fine.contains_key(&x) {
-            let cell = self.crossing_cell(x).unwrap_or_else(|| {
-                let (lo, _) = self.exact(x).enclosure(FINE + 1);
-                let scaled = lo.numer().shl(u64::from(FINE));
-                scaled.div_rem_floor(lo.denom()).0
-            });
+            let (lo, _) = self.exact(x).enclosure(FINE + 1);
+            let scaled = lo.numer().shl(u64::from(FINE));
+            let cell = scaled.div_rem_floor(lo.denom()).0;
             self.fine.insert(x, cell);
         }
         &self.fine[&x]
-    }
-
-    /// The cell of a crossing by Newton's method on integers, proven by the signs of h at its ends.
-    fn crossing_cell(&self, x: NumId) -> Option<Int> {
-        let n = &self.nums[x as usize];
-        let Def::Cross(c, d) = n.def else {
-            return None;
-        };
-        let h = self.diff_poly(c, d);
-        let slope = h.derivative();
-        let cell = |r: f64, bits: u64| {
-            let r = Rat::from_f64(r);
-            r.numer().shl(bits).div_rem_floor(r.denom()).0
-        };
-        // Room below the cell for the roundings of the last step.
-        let room = 8;
-        let end = u64::from(FINE) + room;
-        let mut bits = 106;
-        let mut m = cell(n.lo + (n.hi - n.lo) * 0.5, bits);
-        loop {
-            let rise = slope.eval_dyadic(&m, bits);
-            if rise.is_zero() {
-                return None;
-            }
-            m = &m - &h.eval_dyadic(&m, bits).div_rem_floor(&rise).0;
-            if bits == end {
-                break;
-            }
-            let next = (bits * 2).min(end);
-            m = m.shl(next - bits);
-            bits = next;
-        }
-        let m = m.shr(room);
-        let (lo, hi) = (cell(n.lo, u64::from(FINE)), cell(n.hi, u64::from(FINE)));
-        for m in [m.clone(), &m - &Int::one(), &m + &Int::one()] {
-            let above = &m + &Int::one();
-            let signs = [&m, &above].map(|m| h.sign_at_dyadic(m, u64::from(FINE)));
-            // Well inside the enclosure, which holds one root.
-            if lo < m && above <= hi && (signs[0] == 0 || signs[0] * signs[1] < 0) {
-                return Some(m);
-            }
-        }
-        None
     }
 
     /// Exact order of a number and a double.
