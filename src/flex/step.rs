@@ -384,7 +384,14 @@ impl<'a> Run<'a> {
             }
             last_gain = double(&gain);
             promise = last_gain / 10.0;
-            if gain.abs() < rules.gain {
+            let safe = rules.path == Path::Safe;
+            if safe && gain.sign() < 0 && out.configurations.len() > 1 {
+                // Nothing is violated on a safe path, so nothing calls for a step back.
+                out.configurations.pop();
+                poses.clone_from(&out.configurations[out.configurations.len() - 1]);
+                out.displacement = &out.displacement - &gain;
+            }
+            if gain.abs() < rules.gain || (safe && gain.sign() < 0) {
                 out.ending = Ending::Converged;
                 break;
             }
