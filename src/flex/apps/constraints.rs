@@ -34,8 +34,7 @@ pub struct Constraint {
     pub normal_square: Rat,
     /// d₀, in the same scale.
     pub d0: Rat,
-    /// Non-zero coefficients: body, coordinate, value; in the scale of [`Constraint::distance`]
-    /// times the normal's length.
+    /// Non-zero coefficients: body, coordinate, value; in the same scale.
     pub gradient: Vec<(usize, &'static str, Rat)>,
     /// What it bounds by itself.
     pub bound: Option<Bound>,

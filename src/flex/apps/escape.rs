@@ -113,8 +113,9 @@ mod tests {
         let far = polygon(&[(1000, 0), (1001, 0), (1001, 1), (1000, 1)]);
         assert!(!escapes(&block, &far, &d(1, 0)));
         assert!(escapes(&block, &far, &d(-1, 0)));
-        // Sliding past with edges in one line is no collision.
-        assert!(escapes(&block, &far, &d(999, 1)) == false);
+        // Past its upper left corner: touching it in a point is no collision, less height is one.
+        assert!(escapes(&block, &far, &d(999, 1)));
+        assert!(!escapes(&block, &far, &d(1000, 1)));
         assert!(escapes(&block, &far, &d(1, 1)));
         assert!(escapes(
             &block,
