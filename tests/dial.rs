@@ -337,7 +337,9 @@ fn what_is_not_modelled_costs_nothing() {
             run(&plain, Arithmetic::Filtered),
             run(&rubbed, Arithmetic::Filtered),
         );
-        if a.outcome.kind == b.outcome.kind && a.outcome.time == b.outcome.time {
+        let same = a.outcome.kind == b.outcome.kind && a.outcome.time == b.outcome.time;
+        // Debug assertions ask questions of their own, at places that friction moves.
+        if same && !cfg!(debug_assertions) {
             assert!(a.ledger.counts.asked() <= b.ledger.counts.asked(), "{name}");
         }
         // A root is rational polygons against polygons: the pawls' questions stay the same.
@@ -348,7 +350,7 @@ fn what_is_not_modelled_costs_nothing() {
                 run(&bare, Arithmetic::Filtered),
                 run(&plain, Arithmetic::Filtered),
             );
-            if a.outcome.kind == b.outcome.kind {
+            if a.outcome.kind == b.outcome.kind && !cfg!(debug_assertions) {
                 assert!(a.ledger.counts.asked() <= b.ledger.counts.asked(), "{name}");
             }
         }

@@ -89,7 +89,7 @@ fn carried(s: &Structure, u: &Rat, by: &Vec2) -> Structure {
 
 #[test]
 fn optima_do_not_depend_on_where_a_structure_stands() {
-    for (family, bodies) in [("wall", 9), ("can", 12), ("flock", 7), ("jit", 6)] {
+    for (family, bodies) in [("wall", 9), ("can", 12), ("ring", 7), ("jit", 6)] {
         let s = generate(family, bodies, 3).unwrap();
         let wanted = first_optimum(&s);
         assert!(wanted.sign() > 0, "{family}");

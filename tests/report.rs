@@ -260,7 +260,12 @@ fn times_count_from_the_start_of_the_plan() {
 #[test]
 fn the_same_bytes_every_time() {
     for (_, text) in SCENES {
-        let texts = [(); 2].map(|()| document(text).1.to_text().unwrap());
+        // All but the seconds that the ledger tells.
+        let timeless = |text: String| -> Vec<String> {
+            let lines = text.lines().filter(|l| !l.contains("_seconds\":"));
+            lines.map(str::to_owned).collect()
+        };
+        let texts = [(); 2].map(|()| timeless(document(text).1.to_text().unwrap()));
         assert_eq!(texts[0], texts[1]);
     }
 }

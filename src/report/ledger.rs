@@ -35,7 +35,7 @@ pub struct PredicatesDocument {
     /// A fixed precision of some hundred bits.
     pub wider: u64,
     /// Exact arithmetic.
-    pub exact: u64,
+    pub exact_calls: u64,
     /// Of the exact ones, how many found equality or zero.
     pub zeros: u64,
 }
@@ -65,7 +65,7 @@ impl LedgerDocument {
                 names: c.names,
                 doubles: c.doubles,
                 wider: c.wider,
-                exact: c.exact,
+                exact_calls: c.exact,
                 zeros: c.zeros,
             },
             most_bits: c.most_bits,
