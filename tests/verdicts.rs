@@ -103,7 +103,7 @@ fn hook(seed: u64) -> Scene {
     let (tip, s, u, length) = (
         r.range(-3, 1),
         r.range(1, 8),
-        r.range(-2, 8),
+        r.range(0, 8),
         r.range(16, 40),
     );
     let high = a + 4 + s + r.range(1, 4);
