@@ -57,7 +57,10 @@ fn the_arm_of_section_4_to_thirty_digits() {
     let below = example("arm", &[]);
     let above = example(
         "arm",
-        &[("body.arm.tan_half", "68480406462161287469/165326326037771920630")],
+        &[(
+            "body.arm.tan_half",
+            "68480406462161287469/165326326037771920630",
+        )],
     );
     // u < √2 − 1 < v: (u + 1)² < 2 < (v + 1)².
     let past = |s: &Structure| (&s.bodies[0].tan_half + &Rat::one()).square() > Rat::from(2);
@@ -129,7 +132,10 @@ fn a_frame_asks_for_a_vertical_beam_and_is_helped_by_it() {
         "from the lower side to the upper: {names:?}"
     );
     let column = |name: &str| name[1..name.find('_').unwrap()].parse::<i64>().unwrap();
-    assert!(names.iter().all(|n| (3..=7).contains(&column(n))), "{names:?}");
+    assert!(
+        names.iter().all(|n| (3..=7).contains(&column(n))),
+        "{names:?}"
+    );
     let [before, after] = found.squares.clone();
     assert!(after > before);
     assert!(flexed.displacement.sign() > 0);
@@ -158,7 +164,10 @@ fn no_visible_pair_parts_farther() {
         let turned = s.bodies[b].vertices[v].rotate_tan_half(&poses[b].tan_half);
         &poses[b].place + &turned
     };
-    let (from, to) = (&flexed.configurations[0], flexed.configurations.last().unwrap());
+    let (from, to) = (
+        &flexed.configurations[0],
+        flexed.configurations.last().unwrap(),
+    );
     let polygons: Vec<snapfit::geometry::Polygon> = (0..s.bodies.len())
         .map(|b| {
             let n = s.bodies[b].vertices.len();
@@ -189,7 +198,10 @@ fn no_visible_pair_parts_farther() {
             }
             rivals += 1;
             let (a, b) = (point(from, p.0, p.1), point(from, q.0, q.1));
-            assert!(!seen(&a, &b), "{p:?} and {q:?} see each other and part farther");
+            assert!(
+                !seen(&a, &b),
+                "{p:?} and {q:?} see each other and part farther"
+            );
         }
     }
     let _ = rivals;
@@ -205,7 +217,12 @@ fn the_can_is_loosened_up_to_a_limit() {
     let loose = loosen(&can, &Rat::frac(1, 50)).unwrap();
     // Clearance 1/50 becomes 3/50. Pressing gains about in proportion.
     let more = first_optimum(&loose);
-    assert!(more > &tight * &Rat::from(2), "{} {}", value(&tight), value(&more));
+    assert!(
+        more > &tight * &Rat::from(2),
+        "{} {}",
+        value(&tight),
+        value(&more)
+    );
     for (a, b) in can.bodies.iter().zip(&loose.bodies) {
         assert_eq!(a.vertices.len(), b.vertices.len());
     }
@@ -261,8 +278,14 @@ tan_half = "{tan_half}"
 #[test]
 fn both_signs_and_the_case_between_them() {
     // Mouth up, left, and (by θ with tan(θ/2) = 3, past a quarter) to the lower left.
-    assert_eq!(answers(&separate(&cup("0"), false, None)), [true, false, false]);
-    assert_eq!(answers(&separate(&cup("1"), false, None)), [false, true, false]);
+    assert_eq!(
+        answers(&separate(&cup("0"), false, None)),
+        [true, false, false]
+    );
+    assert_eq!(
+        answers(&separate(&cup("1"), false, None)),
+        [false, true, false]
+    );
     // cos θ = −4/5, sin θ = 3/5: up becomes (−3/5, −4/5).
     let down = separate(&cup("3"), true, None);
     assert_eq!(answers(&down), [false, true, false]);
@@ -287,7 +310,7 @@ fn what_interlocks_holds() {
     for (family, bodies) in [("grid", 6), ("chain", 4), ("can", 8)] {
         let s = generate(family, bodies, 1).unwrap();
         assert_eq!(answers(&separate(&s, false, None)), [false; 3], "{family}");
-        let order = sequence(&s);
+        let order = sequence(&s, None);
         assert!(order.removed.is_empty(), "{family}");
         assert!(!order.left.is_empty());
     }
@@ -311,7 +334,7 @@ fixed = true
     assert_eq!(cases[0].clear, Some(false));
     shut.epsilon = Rat::one();
     assert_eq!(answers(&separate(&shut, true, None)), [false; 3]);
-    assert!(sequence(&shut).removed.is_empty());
+    assert!(sequence(&shut, None).removed.is_empty());
 }
 
 /// PF Fig. 8: bodies leave from the top down, and only so.
@@ -321,7 +344,7 @@ fn an_assembly_comes_apart_from_the_top() {
     let cases = separate(&s, true, None);
     assert!(answers(&cases)[0]);
     assert_eq!(cases[0].clear, Some(true));
-    let order = sequence(&s);
+    let order = sequence(&s, None);
     let names: Vec<&str> = order
         .removed
         .iter()
@@ -334,7 +357,7 @@ fn an_assembly_comes_apart_from_the_top() {
     // Holding the bridge holds all the rest.
     let mut capped = s.clone();
     capped.bodies[4].hold = snapfit::flex::Hold::Fixed;
-    assert!(sequence(&capped).removed.is_empty());
+    assert!(sequence(&capped, None).removed.is_empty());
     assert_eq!(answers(&separate(&capped, true, None)), [false; 3]);
 }
 
@@ -356,16 +379,18 @@ fn a_flock_keeps_its_views_and_its_limits() {
     let last = flexed.configurations.last().unwrap();
     let allowed = s.step.violation.clone();
     for view in &s.views {
-        let at = |body: usize, p: &Vec2| {
-            &last[body].place + &p.rotate_tan_half(&last[body].tan_half)
-        };
+        let at =
+            |body: usize, p: &Vec2| &last[body].place + &p.rotate_tan_half(&last[body].tan_half);
         let eye = at(view.body, &view.camera);
         let to = &at(view.of, &view.marker) - &eye;
         for (ray, sign) in [(&view.left, -1), (&view.right, 1)] {
             let ray = ray.rotate_tan_half(&last[view.body].tan_half);
             let side = ray.cross(&to) * Rat::from(sign);
             let bound = &allowed.square() * &ray.norm2();
-            assert!(side.sign() >= 0 || side.square() <= bound, "a marker is out of view");
+            assert!(
+                side.sign() >= 0 || side.square() <= bound,
+                "a marker is out of view"
+            );
         }
     }
     // Five nearest neighbours: each robot but the fixed pairs has rows; they change as it moves.
@@ -405,7 +430,11 @@ fn the_verbs_answer() {
     let (code, svg, _) = snapfit(&["render", "examples/flex/fig1.toml", "--svg"]);
     assert_eq!(code, 0);
     assert!(svg.starts_with("<svg"));
-    assert_eq!(svg.matches("<path").count(), 16, "eight before, eight after");
+    assert_eq!(
+        svg.matches("<path").count(),
+        16,
+        "eight before, eight after"
+    );
     let (code, _, said) = snapfit(&["loosen", fig8]);
     assert_eq!(code, 2, "{said}");
     let (code, text, _) = snapfit(&["loosen", "examples/flex/fig1.toml", "--by", "1/100"]);

@@ -696,8 +696,8 @@ fn netlib() {
         return;
     };
     let slow = [
-        "25fv47", "bnl1", "cycle", "d2q06c", "degen3", "dfl001", "fit2p", "greenbeb", "maros",
-        "maros-r7", "modszk1", "nesm", "pilot4", "pilot87", "stocfor2", "woodw",
+        "25fv47", "bnl1", "cycle", "d2q06c", "dfl001", "fit2p", "greenbeb", "maros", "maros-r7",
+        "modszk1", "nesm", "pilot4", "pilot87", "stocfor2", "woodw",
     ];
     let all = std::env::var_os("NETLIB_ALL").is_some();
     for line in table.lines().skip(1) {

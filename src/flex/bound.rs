@@ -55,8 +55,8 @@ struct Hinge {
     a: usize,
     b: usize,
     rows: Vec<Sighted>,
-    /// |Δξ| ≤ shift, |φ| ≤ turn.
-    shift: f64,
+    /// |Δξ| ≤ shift in x and in y, |φ| ≤ turn.
+    shift: [f64; 2],
     turn: f64,
     dropped: usize,
 }
@@ -70,8 +70,13 @@ struct Sighted {
     length: f64,
     /// Coefficient of φ when x₂ − x₁ and θ_B − θ_A are the variables.
     phi: Rat,
-    /// Distance from the turning centre to what turns.
+    /// From the turning centre to what turns: its length, its part along the normal and along the
+    /// edge.
     arm: f64,
+    inward: f64,
+    swing: f64,
+    /// The edge's direction.
+    unit: [f64; 2],
     /// Start of the foot along the edge, the edge's length.
     foot: f64,
     edge_length: f64,
@@ -125,7 +130,7 @@ pub fn outer_bound(
     for h in &mut hinges {
         h.settle();
     }
-    hinges.retain(|h| h.shift.is_finite());
+    hinges.retain(|h| h.turn.is_finite());
     let net = Net::new(&scaffold, &hinges);
     net.bound(structure, &scaffold, &placed, time_limit)
 }
@@ -158,7 +163,7 @@ fn hinges(scaffold: &Scaffold, placed: &[Placed]) -> Vec<Hinge> {
             a,
             b,
             rows,
-            shift: f64::INFINITY,
+            shift: [f64::INFINITY; 2],
             turn: f64::INFINITY,
             dropped: 0,
         })
@@ -222,6 +227,9 @@ fn sight(
         length,
         phi: Rat::from(phi.clone()),
         arm: up(arm[0].hypot(arm[1])),
+        inward: dot(arm, normal),
+        swing: up((arm[1] * unit[0] - arm[0] * unit[1]).abs()),
+        unit,
         foot: dot(minus(at, start), unit),
         edge_length,
         ends: [past(k, [-unit[0], -unit[1]], start), past(next, unit, end)],
@@ -255,10 +263,14 @@ fn inside(p: &Placed, corner: usize, out: [f64; 2], tip: [f64; 2]) -> f64 {
 
 impl Sighted {
     /// The slack of the row's linear part in a region, as a distance; None where the row may not
-    /// hold there.
-    fn slack(&self, shift: f64, turn: f64) -> Option<f64> {
+    /// hold there. With |n| = 1 the distance's second-order part is at most
+    /// max(0, −n·r) φ²/2 + |r| |φ|³/6, for a line of the second body besides |Δξ·e| |φ| with e
+    /// along the edge.
+    fn slack(&self, shift: [f64; 2], turn: f64) -> Option<f64> {
+        let size = shift[0].hypot(shift[1]);
+        let slide = up(shift[0] * self.unit[0].abs() + shift[1] * self.unit[1].abs());
         // How far the vertex may move along the edge, seen from the edge's body.
-        let moved = up(shift + self.arm * turn);
+        let moved = up(slide + size * turn + self.swing * turn + self.arm * turn * turn / 2.0);
         let over = [moved - self.foot, self.foot + moved - self.edge_length];
         let mut extra = 0.0f64;
         for (past, over) in self.ends.iter().zip(over) {
@@ -275,11 +287,12 @@ impl Sighted {
                 _ => return None,
             }
         }
-        let curved = self.arm * turn * turn / 2.0;
+        let curved =
+            (1e-12 - self.inward).max(0.0) * turn * turn / 2.0 + self.arm * turn.powi(3) / 6.0;
         let mixed = if self.of_first {
             0.0
         } else {
-            shift * (turn + turn * turn / 2.0)
+            slide * turn + size * turn * turn / 2.0
         };
         Some(up(curved + mixed + extra))
     }
@@ -309,29 +322,35 @@ const NARROW: usize = 3;
 impl Hinge {
     /// Finds a region that no path leaves; leaves it infinite where there is none.
     fn settle(&mut self) {
-        let Some(mut guess) = self.extent(0.0, 0.0, true) else {
+        let Some(mut guess) = self.extent([0.0; 2], 0.0, true) else {
             return;
         };
         for _ in 0..WIDEN {
-            guess = (guess.0 * 1.25 + 1e-9, guess.1 * 1.25 + 1e-9);
+            let wider = |v: f64| v * 1.25 + 1e-9;
+            guess = (guess.0.map(wider), wider(guess.1));
             let Some(found) = self.extent(guess.0, guess.1, false) else {
                 return;
             };
-            if found.0 < guess.0 && found.1 < guess.1 {
+            if found.0[0] < guess.0[0] && found.0[1] < guess.0[1] && found.1 < guess.1 {
                 (self.shift, self.turn) = found;
                 break;
             }
-            guess = (guess.0.max(found.0), guess.1.max(found.1));
-            if !guess.0.is_finite() || !guess.1.is_finite() || guess.1 > 0.5 {
+            for k in 0..2 {
+                guess.0[k] = guess.0[k].max(found.0[k]);
+            }
+            guess.1 = guess.1.max(found.1);
+            if !guess.0[0].is_finite() || !guess.0[1].is_finite() || guess.1 > 0.5 {
                 return;
             }
         }
         for _ in 0..NARROW {
-            if !self.shift.is_finite() {
+            if !self.turn.is_finite() {
                 return;
             }
             if let Some(found) = self.extent(self.shift, self.turn, false) {
-                self.shift = self.shift.min(found.0);
+                for k in 0..2 {
+                    self.shift[k] = self.shift[k].min(found.0[k]);
+                }
                 self.turn = self.turn.min(found.1);
             }
         }
@@ -340,7 +359,7 @@ impl Hinge {
     }
 
     /// The largest |Δξ| and |φ| of the polyhedron that a region's slack gives, rounded outwards.
-    fn extent(&self, shift: f64, turn: f64, linear: bool) -> Option<(f64, f64)> {
+    fn extent(&self, shift: [f64; 2], turn: f64, linear: bool) -> Option<([f64; 2], f64)> {
         let mut model = Model::new("joint");
         model.maximise = true;
         for name in ["x", "y", "t"] {
@@ -386,7 +405,7 @@ impl Hinge {
                 basis = outcome.basis;
             }
         }
-        Some((up(most[0].hypot(most[1])), most[2]))
+        Some(([most[0], most[1]], most[2]))
     }
 }
 
@@ -502,12 +521,14 @@ impl<'a> Net<'a> {
             .iter()
             .enumerate()
             .map(|(k, h)| {
-                let limit = rational(h.shift);
-                let range = Range {
-                    lower: Some(-&limit),
-                    upper: Some(limit),
-                };
-                ["u", "v"].map(|c| model.add_column(&format!("{c}{k}"), Rat::zero(), range.clone()))
+                [0, 1].map(|axis| {
+                    let limit = rational(h.shift[axis]);
+                    let range = Range {
+                        lower: Some(-&limit),
+                        upper: Some(limit),
+                    };
+                    model.add_column(&format!("{}{k}", ["u", "v"][axis]), Rat::zero(), range)
+                })
             })
             .collect();
         let mut dropped = 0;
@@ -553,7 +574,6 @@ impl<'a> Net<'a> {
             };
             &at(to) - &at(from)
         };
-        let size = |v: &Vec2| up(v.norm2().interval().sqrt().hi);
         let tree: Vec<Option<usize>> = self.before.iter().map(|b| b.and_then(|b| b.1)).collect();
         for k in 0..self.hinges.len() {
             if tree.contains(&Some(k)) {
@@ -561,7 +581,8 @@ impl<'a> Net<'a> {
             }
             let Some(steps) = self.chain(k) else { continue };
             let first = steps[0].0;
-            let mut lost = 0.0;
+            // What the linear part may be off by, below and above, in x and y.
+            let (mut below, mut above) = ([0.0f64; 2], [0.0f64; 2]);
             // Bounds of the angles against the first body along the chain, from both sides.
             let turn_of = |l: &Option<usize>| l.map_or(0.0, |k| self.hinges[k].turn);
             let total: f64 = steps.iter().map(|s| turn_of(&s.2)).sum();
@@ -572,7 +593,7 @@ impl<'a> Net<'a> {
                 let least = up(walked.min(total - walked + 1e-15));
                 relative.entry(*to).or_insert(least);
             }
-            // Coefficients: Σ ±(Δξ + (θ_A − θ_first) ξ₀⊥) within ± lost, x and y.
+            // Coefficients: Σ ±(Δξ + (θ_A − θ_first) ξ₀⊥) within [−above, −below], x and y.
             let mut parts: [Vec<(usize, Rat)>; 2] = [Vec::new(), Vec::new()];
             let mut add = |axis: usize, column: Option<usize>, value: Rat| {
                 if let Some(c) = column {
@@ -590,10 +611,26 @@ impl<'a> Net<'a> {
                     let sign = if forward { Rat::one() } else { -Rat::one() };
                     add(0, Some(xi[*k][0]), sign.clone());
                     add(1, Some(xi[*k][1]), sign);
-                    lost += h.shift * (angle + angle * angle / 2.0);
+                    for axis in 0..2 {
+                        let off = h.shift[1 - axis] * angle + h.shift[axis] * angle * angle / 2.0;
+                        below[axis] -= off;
+                        above[axis] += off;
+                    }
                 }
                 // The step itself, ±ξ₀, turns with the frame.
-                lost += size(&step) * angle * angle / 2.0;
+                // (R(α) − 1)s = αs⊥ − (1 − cos α)s + (sin α − α)s⊥.
+                let parts = [double(&step.x), double(&step.y)];
+                for axis in 0..2 {
+                    let bent = parts[axis].abs() * angle * angle / 2.0;
+                    if parts[axis] > 0.0 {
+                        below[axis] -= bent;
+                    } else {
+                        above[axis] += bent;
+                    }
+                    let third = parts[1 - axis].abs() * angle.powi(3) / 6.0;
+                    below[axis] -= third;
+                    above[axis] += third;
+                }
                 for (body, sign) in [(frame, 1), (first, -1)] {
                     let sign = Rat::from(sign);
                     add(0, theta[body], -&(&step.y * &sign));
@@ -601,12 +638,12 @@ impl<'a> Net<'a> {
                 }
             }
             for (axis, entries) in parts.into_iter().enumerate() {
-                let limit = rational(up(lost));
+                // Linear + rest = 0 with the rest in [below, above].
                 let row = model.add_row(
                     &format!("c{k}_{axis}"),
                     Range {
-                        lower: Some(-&limit),
-                        upper: Some(limit),
+                        lower: Some(-&rational(up(above[axis]))),
+                        upper: Some(rational(up(-below[axis]))),
                     },
                 );
                 let mut sums: BTreeMap<usize, Rat> = BTreeMap::new();
@@ -634,7 +671,7 @@ impl<'a> Net<'a> {
                     *slot = &*slot + &value;
                 }
             };
-            let long = size(&weight);
+            let wide = [double(&weight.x).abs(), double(&weight.y).abs()];
             // w·(R(θ)s − s) ≤ θ w·s⊥ + what follows.
             let turned = |s: &Vec2, angle: f64| {
                 let straight = double(&weight.dot(s));
@@ -661,7 +698,10 @@ impl<'a> Net<'a> {
                     put(Some(xi[k][1]), &weight.y * &sign);
                     put(theta[h.a], &weight.y * &step.x - &weight.x * &step.y);
                     let angle = self.turns[h.a];
-                    loss += turned(&step, angle) + long * h.shift * (angle + angle * angle / 2.0);
+                    let across = wide[0] * h.shift[1] + wide[1] * h.shift[0];
+                    let straight = wide[0] * h.shift[0] + wide[1] * h.shift[1];
+                    loss +=
+                        turned(&step, angle) + up(across * angle + straight * angle * angle / 2.0);
                 }
                 at = before;
             }

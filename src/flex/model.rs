@@ -350,14 +350,21 @@ impl Scaffold {
     }
 
     /// The terms of the objective at a configuration: body, its point as turned there, weight of
-    /// the point's displacement, weight of the angle.
+    /// the point's displacement, weight of the angle. Movement towards a line counts by its tangent.
     pub(crate) fn weighted(&self, poses: &[Pose]) -> Vec<(usize, Vec2, Vec2, Rat)> {
         let each = self.terms.iter().map(|t| {
             let turned = t.point.rotate_tan_half(&poses[t.body].tan_half);
             let weight = Vec2::new(t.dx.clone(), t.dy.clone());
             (t.body, turned, weight, t.dtheta.clone())
         });
-        each.collect()
+        // |x₀ − X| − |x − X| is concave in x: at most its tangent, so a bound of the sum with the
+        // tangents in it bounds what is asked.
+        let towards = self.gathered.iter().map(|(body, x)| {
+            let way = (x - &poses[*body].place.x).sign();
+            let weight = Vec2::new(Rat::from(i64::from(way)), Rat::zero());
+            (*body, Vec2::default(), weight, Rat::zero())
+        });
+        each.chain(towards).collect()
     }
 
     /// Whether anything is asked.

@@ -35,11 +35,23 @@ pub(crate) struct SafeStep {
 
 impl Run<'_> {
     /// One safe step from a configuration without violations. Bodies that turn out to meet
-    /// without being joined are added to `extra`, to be kept apart from now on.
-    pub(crate) fn safe_step(&mut self, poses: &[Pose], placed: &[Placed], moved: bool) -> SafeStep {
+    /// without being joined are added to `extra`, to be kept apart from now on. `promise`: about
+    /// what the step may gain.
+    pub(crate) fn safe_step(
+        &mut self,
+        poses: &[Pose],
+        placed: &[Placed],
+        moved: bool,
+        promise: f64,
+    ) -> SafeStep {
         let mut selection = self.selection(placed, moved);
         let (mut pairs, mut rows) = self.rows(&selection, placed);
-        let mut held = vec![0.0f64; rows.len()];
+        // What rounding takes is held back from the first, but no more than half of what there is,
+        // so that standing still stays allowed.
+        let first = 4.0 * self.grain(promise).distance();
+        let start = vec![[0.0; 3]; poses.len()];
+        let keep = |row: &Row| first.min(linear(row, &start) / 2.0).max(0.0);
+        let mut held: Vec<f64> = rows.iter().map(keep).collect();
         let mut programs = 0;
         let mut last: Option<(Solved, Vec<Row>)> = None;
         for attempt in 0..CORRECTIONS {

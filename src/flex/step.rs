@@ -302,6 +302,8 @@ impl<'a> Run<'a> {
             columns: self.scaffold.column_count,
         };
         let mut last_gain = 0.0;
+        // A safe step is guessed to gain a tenth of the one before.
+        let mut promise = f64::INFINITY;
         let mut pairs = Vec::new();
         for k in 0..rules.most {
             if self.late() {
@@ -312,7 +314,7 @@ impl<'a> Run<'a> {
             let placed = self.scaffold.place(&poses);
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
-                let safe = self.safe_step(&poses, &placed, k > 0);
+                let safe = self.safe_step(&poses, &placed, k > 0, promise);
                 Taken {
                     model_seconds: 0.0,
                     rows: safe.rows.len(),
@@ -381,6 +383,7 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
+            promise = last_gain / 10.0;
             if gain.abs() < rules.gain {
                 out.ending = Ending::Converged;
                 break;

@@ -13,7 +13,7 @@
 //! variable has its violated bound as its only one. After [`PATIENCE`] steps of length zero the
 //! choice of both variables is by least index among the candidates (Bland's rule) until a step
 //! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least).
-//! There are finitely many statuses, and the method changes at most three times: the search for a
+//! There are finitely many statuses, finitely many proposals from outside, and the method changes at most three times: the search for a
 //! feasible point that [`run`] may begin with ends in one, after which the primal method keeps it.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
@@ -60,10 +60,15 @@ impl Verdict<'_> {
 /// Ends the run by answering true.
 pub(crate) type Watch<'w> = dyn FnMut(&Frame<'_>, Option<&ColumnVector>, &RowVector) -> bool + 'w;
 
+/// Is shown every basis that is neither the last nor part of the search for a feasible point, and
+/// may propose another one.
+pub(crate) type Refine<'r> = dyn FnMut(&Frame<'_>, &ColumnVector, &RowVector) -> Option<Basis> + 'r;
+
 /// What a run took.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Effort {
     pub(crate) pivots: u64,
+    pub(crate) refinements: u64,
 }
 
 /// Which bound a basic variable violates.
@@ -76,7 +81,12 @@ enum Breach {
 
 enum Step<'a> {
     Done(Box<Verdict<'a>>),
-    Move { basis: Basis, length_zero: bool },
+    Move {
+        basis: Basis,
+        length_zero: bool,
+    },
+    /// Proposed from outside: nothing is known of it.
+    Jump(Basis),
 }
 
 /// Runs the exact simplex method from a basis (repaired if singular) to the end.
@@ -89,6 +99,7 @@ pub(crate) fn run<'a>(
     start: Basis,
     blame: Option<usize>,
     watch: &mut Watch<'_>,
+    refine: &mut Refine<'_>,
     budget: &Budget,
     effort: &mut Effort,
 ) -> Result<Verdict<'a>, (Exhausted, Basis)> {
@@ -107,9 +118,15 @@ pub(crate) fn run<'a>(
             stalled >= PATIENCE,
             &mut seeking,
             watch,
+            refine,
             &mut guesses,
             budget,
         ) {
+            Ok(Step::Jump(next)) => {
+                effort.refinements += 1;
+                (regular, guesses) = (false, [None, None, None]);
+                basis = next;
+            }
             Ok(Step::Done(verdict)) => return Ok(*verdict),
             Ok(Step::Move {
                 basis: next,
@@ -131,6 +148,7 @@ fn step<'a>(
     bland: bool,
     seeking: &mut Option<usize>,
     watch: &mut Watch<'_>,
+    refine: &mut Refine<'_>,
     guesses: &mut Guesses,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
@@ -168,10 +186,16 @@ fn step<'a>(
         if watch(&frame, Some(&values), &duals) {
             return Err(Exhausted);
         }
+        if let Some(basis) = refine(&frame, &values, &duals) {
+            return Ok(Step::Jump(basis));
+        }
         return primal_step(frame, values, breaches, q, sign, guesses, budget);
     }
     if watch(&frame, None, &duals) {
         return Err(Exhausted);
+    }
+    if let Some(basis) = refine(&frame, &values, &duals) {
+        return Ok(Step::Jump(basis));
     }
     if improving.is_none() {
         return dual_step(frame, &values, &breaches, &duals, bland, guesses, budget);

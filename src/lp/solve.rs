@@ -2,7 +2,7 @@
 
 use super::basis::{Basis, ColumnVector, Frame, RowVector};
 use super::budget::{Budget, Meter, Stage};
-use super::float;
+use super::float::{self, Refiner};
 use super::model::Model;
 use super::outcome::{Certificate, Outcome, Places, Status, VECTOR_BITS, conclude, point, prices};
 use super::problem::Problem;
@@ -143,7 +143,20 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         last = (Instant::now(), start.elapsed());
         bounds && known.closed()
     };
-    let run = simplex::run(&problem, start, blame, &mut watch, budget, &mut effort);
+    let mut refiner = Refiner::new();
+    let mut refine = |frame: &Frame<'_>, values: &ColumnVector, duals: &RowVector| {
+        let floats = options.method == Method::Warm;
+        floats.then(|| refiner.refine(frame, values, duals, budget))?
+    };
+    let run = simplex::run(
+        &problem,
+        start,
+        blame,
+        &mut watch,
+        &mut refine,
+        budget,
+        &mut effort,
+    );
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err((_, last)) => {
@@ -159,7 +172,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     if outcome.near.is_empty() {
         outcome.near = guess.0;
     }
-    outcome.float_iterations = iterations;
+    outcome.float_iterations = iterations + refiner.iterations;
     outcome.exact_pivots = effort.pivots;
     outcome
 }

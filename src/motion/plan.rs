@@ -141,7 +141,7 @@ pub struct Seen<K: Kernel = Filtered> {
     pub start: Angle<K>,
 }
 
-/// Simulates a scene in the filtered arithmetic and shows every slice on the way.
+/// Simulates a scene by the sweep in the filtered arithmetic and shows every slice on the way.
 ///
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
@@ -150,7 +150,13 @@ pub fn slices(
     options: &Options<'_>,
     see: &mut dyn FnMut(Seen),
 ) -> Result<Trajectory, PlanError> {
-    simulate_with::<Filtered>(scene, options, see)
+    let options = Options {
+        deadline: options.deadline,
+        progress: options.progress,
+        arithmetic: Arithmetic::Filtered,
+        method: Method::Sweep,
+    };
+    simulate_with::<Filtered>(scene, &options, see)
 }
 
 fn simulate_with<K: Kernel>(

@@ -213,6 +213,17 @@ impl<K: Kernel> Sight<K> for Sweep<'_, K> {
                 out.push(a);
             }
         });
+        if chart == Chart::Rest && lo <= -1.0 {
+            // A level on the cut is met from below at the strip's other border.
+            self.free
+                .edges_near([3.0 - slack, 3.0 + slack], [when.lo, when.hi], |e| {
+                    if let Owner::Arc(a) = self.free.edges()[e as usize].owner
+                        && self.slice.arc(a).chart == chart
+                    {
+                        out.push(a);
+                    }
+                });
+        }
         out.sort_unstable();
         out.dedup();
         Cow::Owned(out)

@@ -54,7 +54,7 @@ pub struct FreeVertex {
     pub x: [f64; 2],
     /// Enclosure of its time.
     pub t: [f64; 2],
-    /// −1, 0 or 1: the side of rest it lies on, 1 all over the back chart.
+    /// −1, 0 or 1: the side of rest it lies on, 1 all over the back chart, −1 on the cut.
     pub side: i8,
     /// Whether it lies on the cut, where it may be nothing but the coordinates' seam.
     pub cut: bool,
@@ -540,7 +540,12 @@ impl Assembly {
                     curve,
                     x: [lo, hi],
                     t: [t.lo(), t.hi()],
-                    side: k.cmp(num, rest) as i8,
+                    // On the cut, −π/2 for the edges of the rest chart.
+                    side: if stop.is_some() {
+                        -1
+                    } else {
+                        k.cmp(num, rest) as i8
+                    },
                     cut: stop.is_some(),
                     rest_open: false,
                 });
@@ -796,14 +801,19 @@ impl Free {
         let mut found: Vec<(Rat, u32, Option<u32>)> = Vec::new();
         let mut at_end = Vec::new();
         {
-            let k = self.kernel();
-            let value = |curve: u32| {
+            let mut k = self.kernel();
+            let rest = k.rational(&zero);
+            let value = |k: &FaceKernel, curve: u32| {
                 let (p, q) = k.polys(curve);
                 p.eval(&zero) / q.eval(&zero)
             };
             for (i, e) in self.edges.iter().enumerate() {
-                let side = [e.low, e.high].map(|v| self.vertices[v as usize].side);
-                if e.bounds[0] > 0.0 || e.bounds[1] < 0.0 || side[0] > 0 || side[1] < 0 {
+                // By the edge's own ends: a vertex on the cut lies on both of the strip's borders.
+                if e.bounds[0] > 0.0
+                    || e.bounds[1] < 0.0
+                    || k.cmp(e.ends[0], rest).is_gt()
+                    || k.cmp(e.ends[1], rest).is_lt()
+                {
                     continue;
                 }
                 let i = i as u32;
@@ -811,10 +821,15 @@ impl Free {
                     (Owner::End, _) => {
                         at_end.extend_from_slice(self.arcs_at(e.low));
                         at_end.extend_from_slice(self.arcs_at(e.high));
+                        for v in [e.low, e.high] {
+                            if self.vertices[v as usize].side == 0 {
+                                found.push((self.duration.clone(), i, Some(v)));
+                            }
+                        }
                     }
                     (Owner::Arc(a), Shape::Level) => {
                         for v in [e.low, e.high] {
-                            found.push((value(self.vertices[v as usize].curve), i, Some(v)));
+                            found.push((value(&k, self.vertices[v as usize].curve), i, Some(v)));
                         }
                         if let Some(t) = slice.arc(a).lo.t.decided() {
                             found.push((t.to_rat(), i, None));
@@ -824,7 +839,7 @@ impl Free {
                         let v = [e.low, e.high]
                             .into_iter()
                             .find(|&v| self.vertices[v as usize].side == 0);
-                        found.push((value(e.curve), i, v));
+                        found.push((value(&k, e.curve), i, v));
                     }
                     _ => {}
                 }

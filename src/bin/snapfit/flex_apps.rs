@@ -8,9 +8,10 @@ use serde::Serialize;
 use snapfit::flex::apps::brace::{BraceDocument, Change, brace, with_question};
 use snapfit::flex::apps::constraints::ConstraintsDocument;
 use snapfit::flex::apps::loosen::{LoosenDocument, Measure, loosen, tolerance};
-use snapfit::flex::apps::separate::{SeparateDocument, separate};
+use snapfit::flex::apps::separate::{SeparateDocument, Separation, separate};
 use snapfit::flex::apps::sequence::{SequenceDocument, sequence};
-use snapfit::flex::{Ending, FlexOptions, Structure, structure_to_toml};
+use snapfit::flex::{Ending, FlexOptions, Pose, Structure, structure_to_toml};
+use snapfit::geometry::Vec2;
 use snapfit::number::Rat;
 use snapfit::report::picture::{StructurePicture, structure_svg};
 use snapfit::report::pretty;
@@ -71,10 +72,16 @@ pub(crate) struct SeparateArgs {
     /// Take the bodies away one after the other, by translations
     #[arg(long)]
     sequence: bool,
+    /// Draw a step in the direction found, to PATH
+    #[arg(long, value_name = "PATH")]
+    svg: Option<PathBuf>,
+    /// With --svg: how far the fastest body goes [default: a quarter of the drawing's height]
+    #[arg(long, value_name = "DISTANCE", value_parser = exact, requires = "svg")]
+    step: Option<Rat>,
     /// Exit with status 4 unless it comes apart, or unless it holds
     #[arg(long, value_enum)]
     expect: Option<ExpectArg>,
-    /// Give up on a program after so many seconds
+    /// Give up on a program, and on the sequence, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     time_limit: Option<Duration>,
 }
@@ -209,13 +216,58 @@ pub(crate) fn run_loosen(args: &LoosenArgs) -> Result<u8, Failure> {
     Ok(DECIDED)
 }
 
+/// The picture of a step in the first direction found.
+fn parted(structure: &Structure, cases: &[Separation; 3], step: Option<&Rat>) -> String {
+    let before: Vec<Pose> = structure.bodies.iter().map(Pose::of).collect();
+    let velocities = cases.iter().find_map(|c| c.velocities.as_ref());
+    let heights = || {
+        structure
+            .bodies
+            .iter()
+            .flat_map(|b| b.vertices.iter().map(|v| &v.y))
+    };
+    let size = match (heights().min(), heights().max()) {
+        (Some(low), Some(high)) => high - low,
+        _ => Rat::one(),
+    };
+    let step = step.cloned().unwrap_or(size / Rat::from(4));
+    let after = match velocities {
+        None => before.clone(),
+        Some(all) => before
+            .iter()
+            .zip(all)
+            .map(|(pose, [x, y, theta])| Pose {
+                place: &pose.place + &Vec2::new(x * &step, y * &step),
+                tan_half: &pose.tan_half + &(theta * &step) / &Rat::from(2),
+            })
+            .collect(),
+    };
+    let what = match velocities {
+        Some(_) => "a step in a direction of separation",
+        None => "nothing comes apart",
+    };
+    structure_svg(&StructurePicture {
+        structure,
+        before: &before,
+        after: &after,
+        title: format!("{}: {what}", structure.name),
+        note: String::new(),
+        brace: None,
+        frame: &[],
+    })
+}
+
 pub(crate) fn run_separate(args: &SeparateArgs) -> Result<u8, Failure> {
     let structure = read(&args.common)?;
     let cases = separate(&structure, args.translations, args.time_limit);
     let mut document = SeparateDocument::new(&structure, args.translations, &cases);
     if args.sequence {
-        let order = sequence(&structure);
+        let order = sequence(&structure, args.time_limit);
         document.sequence = Some(SequenceDocument::new(&structure, &order));
+    }
+    if let Some(path) = &args.svg {
+        output::spare_input(&args.common.file, Some(path))?;
+        output::write(Some(path), &parted(&structure, &cases, args.step.as_ref()))?;
     }
     print(&document, &args.common)?;
     let expected = match args.expect {

@@ -37,12 +37,27 @@ fn along(edge: &Seen, across: &Rat) -> Rat {
     &a.1 + &(&part * &(&b.1 - &a.1))
 }
 
+/// Whether their boxes alone show that the mover never meets the other: they share no line along
+/// d, or the mover is wholly ahead. Doubles, rounded outward.
+fn far_apart(mover: &Polygon, other: &Polygon, d: &Vec2) -> bool {
+    let (dx, dy) = (d.x.interval(), d.y.interval());
+    let seen = |p: &Polygon| {
+        let b = p.bounds();
+        (dx * b.y - dy * b.x, dx * b.x + dy * b.y)
+    };
+    let ((a, p), (b, q)) = (seen(mover), seen(other));
+    a.hi < b.lo || b.hi < a.lo || p.lo >= q.hi
+}
+
 /// Whether `mover`, going on along `d` for ever, never meets the interior of `other`. For d = 0:
 /// true, since the interiors do not meet at the start.
 ///
 /// Cost: the product of the numbers of edges.
 pub fn escapes(mover: &Polygon, other: &Polygon, d: &Vec2) -> bool {
     if d.is_zero() {
+        return true;
+    }
+    if far_apart(mover, other, d) {
         return true;
     }
     let (mine, theirs) = (edges(mover, d), edges(other, d));

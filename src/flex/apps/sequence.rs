@@ -17,6 +17,7 @@ use crate::lp::{self, Model, Options, Range, Status};
 use crate::number::Rat;
 use serde::Serialize;
 use std::collections::BTreeSet;
+use std::time::{Duration, Instant};
 
 /// The order in which bodies leave.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +26,8 @@ pub struct Sequence {
     pub removed: Vec<(usize, Vec2)>,
     /// Free bodies that are left, for which no direction was found.
     pub left: Vec<usize>,
+    /// Whether time ran out first.
+    pub cut_short: bool,
 }
 
 /// The near constraints of two bodies: n · (velocity of `of` − velocity of `by`) ≥ 0.
@@ -36,8 +39,11 @@ struct Guard {
 
 /// Takes a structure apart. Bodies that are held stay; where none is, the first does.
 ///
+/// `limit` bounds the whole search.
+///
 /// Cost: for every body removed, up to eleven programs of two columns for every body left.
-pub fn sequence(structure: &Structure) -> Sequence {
+pub fn sequence(structure: &Structure, limit: Option<Duration>) -> Sequence {
+    let deadline = limit.and_then(|t| Instant::now().checked_add(t));
     let structure = held(structure);
     let options = FlexOptions::default();
     let run = Run::new(&structure, &options);
@@ -59,9 +65,15 @@ pub fn sequence(structure: &Structure) -> Sequence {
     let mut inside = vec![true; polygons.len()];
     let mut out = Sequence::default();
     loop {
+        let late = std::cell::Cell::new(false);
         let next = (0..polygons.len())
             .filter(|&b| inside[b] && structure.bodies[b].hold == Hold::Free)
+            .take_while(|_| {
+                late.set(deadline.is_some_and(|d| Instant::now() >= d));
+                !late.get()
+            })
             .find_map(|b| way_out(b, &guards, &polygons, &inside).map(|d| (b, d)));
+        out.cut_short = late.get();
         let Some((body, direction)) = next else {
             break;
         };
@@ -174,6 +186,8 @@ pub struct SequenceDocument {
     pub removed: Vec<(String, [String; 2])>,
     /// Free bodies that are left.
     pub left: Vec<String>,
+    /// Whether time ran out first.
+    pub cut_short: bool,
 }
 
 impl SequenceDocument {
@@ -187,6 +201,7 @@ impl SequenceDocument {
                 .map(|(b, d)| (name(*b), [d.x.to_string(), d.y.to_string()]))
                 .collect(),
             left: sequence.left.iter().map(|&b| name(b)).collect(),
+            cut_short: sequence.cut_short,
         }
     }
 }

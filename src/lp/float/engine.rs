@@ -361,8 +361,8 @@ impl<'a> Engine<'a> {
     /// The program's own costs and bounds, and everything that follows from the basis.
     fn restore(&mut self) {
         self.widening = false;
-        self.cost.truncate(self.program.n);
-        self.cost.copy_from_slice(&self.program.cost);
+        self.cost.clear();
+        self.cost.extend_from_slice(&self.program.cost);
         self.cost.resize(self.program.n + self.program.m, 0.0);
         self.lower.copy_from_slice(&self.program.lower);
         self.upper.copy_from_slice(&self.program.upper);

@@ -59,6 +59,7 @@ pub(crate) struct Program {
     pub(crate) m: usize,
     pub(crate) columns: Sparse,
     pub(crate) rows: Sparse,
+    /// Of the columns; where there are more, of the logicals too.
     pub(crate) cost: Vec<f64>,
     pub(crate) lower: Vec<f64>,
     pub(crate) upper: Vec<f64>,

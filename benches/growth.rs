@@ -1,0 +1,324 @@
+//! How time and memory grow: the face by walking and by merging on long racks and on a family whose whole
+//! arrangement is quadratic, degenerate sets beside a generic one, and scenes with many teeth, many pawls, or
+//! nearly all of the obstacle out of reach. Everything as ratios, counts and exponents of one run; the figures kept
+//! are in `README.md` beside this file.
+//!
+//! `cargo bench --bench growth` goes to 10⁵ arcs, `GROWTH_MAX=1000000` further; words after `--` choose parts.
+
+use snapfit::face::{ArcFile, Method, RootOf, SourceArc, face};
+use snapfit::motion::{Options, simulate};
+use snapfit::number::{Int, Rat};
+use snapfit::scene::read_scene;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+fn cpu() -> f64 {
+    let t = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    t.tv_sec as f64 + t.tv_nsec as f64 * 1e-9
+}
+
+/// CPU seconds of a job, the least of enough runs to be told from noise.
+fn seconds(mut job: impl FnMut()) -> f64 {
+    let (mut least, mut spent) = (f64::INFINITY, 0.0);
+    for _ in 0..5 {
+        let from = cpu();
+        job();
+        let took = cpu() - from;
+        least = least.min(took);
+        spent += took;
+        if spent > 4.0 {
+            break;
+        }
+    }
+    least
+}
+
+/// Peak resident megabytes since the last call with `reset`; NaN where the system does not say.
+fn peak(reset: bool) -> f64 {
+    if reset {
+        let _ = std::fs::write("/proc/self/clear_refs", "5");
+    }
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kb = line.and_then(|l| l.split_whitespace().next()?.parse::<f64>().ok());
+    kb.map_or(f64::NAN, |kb| kb / 1024.0)
+}
+
+/// The slope of the least-squares line through the logarithms.
+fn exponent(points: &[(f64, f64)]) -> f64 {
+    let n = points.len() as f64;
+    let logs: Vec<(f64, f64)> = points.iter().map(|p| (p.0.ln(), p.1.ln())).collect();
+    let mean = logs
+        .iter()
+        .fold((0.0, 0.0), |m, p| (m.0 + p.0 / n, m.1 + p.1 / n));
+    let (mut above, mut below) = (0.0, 0.0);
+    for p in &logs {
+        above += (p.0 - mean.0) * (p.1 - mean.1);
+        below += (p.0 - mean.0) * (p.0 - mean.0);
+    }
+    above / below
+}
+
+/// The contact arcs of a pawl with six corners and one tooth with six, 22 in all.
+const TOOTH: &str = include_str!("tooth.arcs");
+
+/// A long rack: the tooth again and again, 5/8 of a time unit apart. A tooth moved along the path by d moves its
+/// arcs by d in t, exactly: P becomes P + d·Q.
+fn rack(n: usize) -> Vec<SourceArc> {
+    let tooth = ArcFile::parse(TOOTH).expect("the tooth is well formed").arcs;
+    let (up, down) = (5i64, 8i64);
+    (0..n)
+        .map(|i| {
+            let (arc, k) = (&tooth[i % tooth.len()], (i / tooth.len()) as i64);
+            let (d, b) = (Int::from(up * k), Int::from(down));
+            SourceArc {
+                p: std::array::from_fn(|j| &arc.p[j] * &b + &arc.q[j] * &d),
+                q: std::array::from_fn(|j| &arc.q[j] * &b),
+                ..arc.clone()
+            }
+        })
+        .collect()
+}
+
+fn ratio(n: i64, d: i64) -> RootOf {
+    RootOf {
+        c: [Int::from(-n), Int::from(d), Int::zero()],
+        k: 0,
+    }
+}
+
+/// Two families of long crossing lines: about n²/4·(a share) crossings, and a face around them all whose
+/// boundary is the fringe of their ends.
+fn lattice(n: usize) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
+    let mut seed = 5u64;
+    let mut below = |m: i64| {
+        seed = seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        ((seed >> 33) as i64) % m
+    };
+    let (mut arcs, mut plain) = (Vec::new(), Vec::new());
+    let steep = 700 * n as i64;
+    for i in 0..n as i64 {
+        let (c, s) = ((i / 2) * 1000 + below(100), if i % 2 == 0 { steep } else { -steep });
+        let (a, b) = (-1000 + below(99), 1000 + below(99));
+        arcs.push(SourceArc {
+            p: [Int::from(c), Int::from(s), Int::zero()],
+            q: [Int::from(1000), Int::zero(), Int::zero()],
+            left: ratio(a, 1000),
+            right: ratio(b, 1000),
+            line: 0,
+        });
+        plain.push([c, s, a, b]);
+    }
+    (arcs, plain)
+}
+
+/// Crossings of the lines of a lattice, all pairs.
+fn crossings(lines: &[[i64; 4]]) -> u64 {
+    let mut count = 0;
+    for (i, l) in lines.iter().enumerate() {
+        for m in &lines[i + 1..] {
+            // c + s·u = d + r·u at u = (d − c)/(s − r), between a/1000 and b/1000.
+            let (top, bottom) = (m[0] - l[0], l[1] - m[1]);
+            if bottom == 0 {
+                continue;
+            }
+            let (top, bottom) = if bottom < 0 { (-top, -bottom) } else { (top, bottom) };
+            let (a, b) = (l[2].max(m[2]), l[3].min(m[3]));
+            count += u64::from(a * bottom <= top * 1000 && top * 1000 <= b * bottom);
+        }
+    }
+    count
+}
+
+fn sizes(from: usize, factor: usize, most: usize) -> impl Iterator<Item = usize> {
+    std::iter::successors(Some(from), move |n| Some(n * factor)).take_while(move |&n| n <= most)
+}
+
+fn racks(most: usize) {
+    println!("\n# Long racks: F is near-linear");
+    println!("lambda(n)/n for arcs that meet at most four times is about 2^alpha(n), and alpha(n) <= 4 here");
+    println!("method      n     |F|    |F|/n  us/arc   peak MB");
+    let start = (Rat::frac(1, 7), Rat::frac(-1, 3));
+    for method in [Method::Merge, Method::Walk] {
+        let (mut time, mut room) = (Vec::new(), Vec::new());
+        for n in sizes(1000, 10, most) {
+            let arcs = rack(n);
+            let before = peak(true);
+            let mut edges = 0;
+            let s = seconds(|| edges = face(&arcs, &start, method).expect("arcs").half_edges);
+            let mb = peak(false) - before;
+            println!(
+                "{method:5?} {n:8} {edges:8} {:6.3} {:8.2} {mb:8.1}",
+                edges as f64 / n as f64,
+                s / n as f64 * 1e6
+            );
+            time.push((n as f64, s));
+            room.push((n as f64, mb));
+        }
+        // Below a few megabytes the allocator's own steps show.
+        room.retain(|p| p.0 >= 1e4);
+        println!(
+            "{method:?}: time n^{:.3}, memory n^{:.3}",
+            exponent(&time),
+            exponent(&room)
+        );
+    }
+}
+
+fn lattices(most: usize) {
+    println!("\n# Long crossing lines, the start outside: the whole arrangement is quadratic");
+    println!("     n  crossings      |F|  |F|/n  merge s  walk s  auto");
+    let mut points = [Vec::new(), Vec::new(), Vec::new()];
+    for n in sizes(250, 4, most.min(64_000)) {
+        let (arcs, plain) = lattice(n);
+        let start = (Rat::zero(), Rat::from(-10 * n as i64));
+        let mut answer = None;
+        let [merge, walk] = [Method::Merge, Method::Walk]
+            .map(|m| seconds(|| answer = Some(face(&arcs, &start, m).expect("arcs"))));
+        let auto = face(&arcs, &start, Method::Auto).expect("arcs").method;
+        let edges = answer.map_or(0, |a| a.half_edges);
+        let all = crossings(&plain);
+        println!(
+            "{n:6} {all:10} {edges:8} {:6.2} {merge:8.4} {walk:8.4} {auto:?}",
+            edges as f64 / n as f64
+        );
+        for (list, y) in points.iter_mut().zip([all as f64, merge, walk]) {
+            list.push((n as f64, y));
+        }
+    }
+    let [all, merge, walk] = points.map(|p| exponent(&p));
+    println!("crossings n^{all:.2}, merge n^{merge:.2}, walk n^{walk:.2}");
+}
+
+fn degenerate() {
+    println!("\n# Degenerate sets: microseconds per (half-edge + arc), over those of the generic set");
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data/arcs");
+    let mut base = None;
+    for name in [
+        "generic_1024",
+        "overlap_256",
+        "overlapscale_256",
+        "tangent_256",
+        "commonalg_256",
+        "common_256",
+        "tangall_256",
+        "near_256",
+    ] {
+        let path = folder.join(format!("deg_{name}.arcs.gz"));
+        let Ok(file) = ArcFile::open(&path) else {
+            eprintln!("SKIPPED: {} is not here", path.display());
+            continue;
+        };
+        let per = [Method::Walk, Method::Merge].map(|m| {
+            let mut edges = 0;
+            let s = seconds(|| {
+                edges = face(&file.arcs, &file.start, m).expect("arcs").half_edges;
+            });
+            s * 1e6 / (edges as f64 + file.arcs.len() as f64)
+        });
+        let base = *base.get_or_insert(per);
+        println!(
+            "{name:17} walk {:6.2} ({:4.1} x)  merge {:6.2} ({:4.1} x)",
+            per[0],
+            per[0] / base[0],
+            per[1],
+            per[1] / base[1]
+        );
+    }
+}
+
+/// A rack of `teeth` below the path of `pawls` equal pawls, and another of `far` teeth out of reach, which is part
+/// of the same obstacle (the file's one polygon goes down to it).
+fn scene(teeth: usize, far: usize, pawls: usize) -> String {
+    let mut text = String::from("[scene]\nname = \"rack\"\n[[obstacle]]\nname = \"R\"\nvertices = [");
+    let mut at = |x: f64, y: f64| {
+        let _ = write!(text, "[\"{x}\", \"{y}\"],");
+    };
+    for i in 0..teeth {
+        at(i as f64, 0.0);
+        at(i as f64 + 0.5, 0.625);
+    }
+    at(teeth as f64, 0.0);
+    at(teeth as f64, -99.0);
+    for i in 0..far {
+        at((teeth + 1 + i) as f64, -100.0);
+        at((teeth + 1 + i) as f64 + 0.5, -99.5);
+    }
+    at((teeth + far + 2) as f64, -102.0);
+    at(0.0, -102.0);
+    text.push_str("]\n");
+    for k in 0..pawls {
+        let _ = writeln!(
+            text,
+            "[[pawl]]\nname = \"p{k}\"\nhinge = [\"-2\", \"2\"]\n\
+             vertices = [[\"-2\", \"2\"], [\"-2\", \"0.3\"], [\"-2.3\", \"0.3\"]]\nstiffness = \"1\""
+        );
+    }
+    let _ = writeln!(text, "[[motion]]\nvelocity = [\"1\", \"0\"]\nduration = \"{teeth}\"");
+    text
+}
+
+/// CPU seconds of a simulation, reading apart.
+fn simulated(text: &str) -> f64 {
+    let file = match read_scene("growth", text) {
+        Ok(file) => file,
+        Err(why) => panic!("{why:?}"),
+    };
+    seconds(|| {
+        simulate(file.scene(), &Options::default()).expect("the plan can be carried out");
+    })
+}
+
+fn scenes() {
+    println!("\n# Scenes, by the simple algorithm with its index of what is near");
+    let base = simulated(&scene(8, 0, 1));
+    let mut points = Vec::new();
+    for teeth in sizes(8, 2, 256) {
+        let s = simulated(&scene(teeth, 0, 1));
+        println!("{teeth:4} teeth: {:7.2} x", s / base);
+        points.push((teeth as f64, s));
+    }
+    println!("teeth: n^{:.2}", exponent(&points));
+    let mut points = Vec::new();
+    for k in sizes(1, 2, 32) {
+        points.push((k as f64, simulated(&scene(32, 0, k))));
+    }
+    let one = points[0].1;
+    for (k, s) in &points {
+        println!("{k:3} pawls: {:6.2} x one", s / one);
+    }
+    println!("pawls: k^{:.2}", exponent(&points));
+    for teeth in [32, 128] {
+        let (near, with) = (
+            simulated(&scene(teeth, 0, 1)),
+            simulated(&scene(teeth, 99 * teeth, 1)),
+        );
+        println!("{teeth} teeth and 99 times as many out of reach: {:.2} x", with / near);
+    }
+}
+
+fn main() {
+    let chosen: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with('-'))
+        .collect();
+    let wanted = |part: &str| chosen.is_empty() || chosen.iter().any(|c| c == part);
+    let most = std::env::var("GROWTH_MAX")
+        .ok()
+        .and_then(|m| m.parse().ok())
+        .unwrap_or(100_000);
+    if wanted("racks") {
+        racks(most);
+    }
+    if wanted("lattices") {
+        lattices(most.min(16_000));
+    }
+    if wanted("degenerate") {
+        degenerate();
+    }
+    if wanted("scenes") {
+        scenes();
+    }
+}
