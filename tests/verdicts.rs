@@ -66,7 +66,7 @@ fn every_design_is_decided() {
             critical: true,
         };
         let d = classify(&s, &ask).unwrap();
-        let f = forces(&s, &Wish::default(), &Ask::default()).unwrap();
+        let f = forces(&s, &Wish::all(6, 0), &Ask::default()).unwrap();
         assert_eq!(f.pawls.len(), s.pawls.len());
         let took = begin.elapsed();
         if took > Duration::from_secs(4) || d.undecided() {
