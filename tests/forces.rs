@@ -200,12 +200,7 @@ fn middle(b: &Bound) -> f64 {
 }
 
 fn asked(s: &Scene, digits: u32, samples: u32) -> ForcesDocument {
-    let wish = Wish {
-        digits,
-        samples,
-        draw: false,
-    };
-    forces(s, &wish, &Ask::default()).unwrap()
+    forces(s, &Wish::all(digits, samples), &Ask::default()).unwrap()
 }
 
 /// Without friction the drive's power goes into the springs, whatever the contact: −f·ṗ = Σ kθθ̇,
@@ -302,10 +297,11 @@ fn work_and_peaks_of_the_root_hold_against_sampling() {
                 least = least.min(w);
                 turn = turn.max(middle(&at.torque).abs());
             }
+            let peak = p.peak.as_ref().unwrap();
             for (peak, seen) in [
-                (&p.peak.resistance, most),
-                (&p.peak.help, -least),
-                (&p.peak.torque, turn),
+                (&peak.resistance, most),
+                (&peak.help, -least),
+                (&peak.torque, turn),
             ] {
                 if let Some([lo, hi]) = ends(peak) {
                     assert!(
@@ -372,8 +368,9 @@ fn the_handbooks_example_parts_by_the_arms_turn() {
     let steep = asked(&scene("examples/bayer-hook-steep.toml"), 6, 0);
     assert_eq!(steep.outcome, "stuck");
     let held = steep.root.unwrap().phases.pop().unwrap();
-    assert_eq!(ends(&held.peak.resistance), None);
-    assert!(ends(&held.peak.help).is_some());
+    let held = held.peak.unwrap();
+    assert_eq!(ends(&held.resistance), None);
+    assert!(ends(&held.help).is_some());
 }
 
 /// The digits asked for bound both the width and the length of what is printed.
@@ -404,4 +401,59 @@ fn without_a_stiffness_nothing_is_modelled_and_that_is_said() {
     let doc = asked(&s, 6, 3);
     assert!(!doc.modelled && doc.peak.is_none() && doc.root.is_none());
     assert!(doc.note.unwrap().contains("no pawl has a stiffness"));
+}
+
+/// What is asked for besides the peaks changes none of them, and what is not asked for is absent.
+#[test]
+fn each_wish_adds_its_own_part_and_changes_no_other() {
+    for name in SCENES {
+        let mut s = scene(name);
+        s.friction = Some(Rat::frac(1, 4));
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(3));
+        });
+        let run = |wish: &Wish| {
+            let doc = forces(&s, wish, &Ask::default()).unwrap();
+            serde_json::to_value(&doc).unwrap()
+        };
+        let (least, all) = (run(&Wish::default()), run(&Wish::all(6, 3)));
+        assert_eq!(least["peak"], all["peak"], "{name}");
+        assert!(least["root"].is_null() && least["comparison"].is_null());
+        assert!(!all["root"].is_null());
+        let segments = |doc: &serde_json::Value| {
+            let pawls = doc["pawls"].as_array().unwrap().clone();
+            pawls
+                .iter()
+                .flat_map(|p| p["segments"].as_array().unwrap().clone())
+                .collect::<Vec<_>>()
+        };
+        for (a, b) in segments(&least).iter().zip(&segments(&all)) {
+            for key in ["from", "to", "force", "torque", "time"] {
+                assert_eq!(a[key], b[key], "{name} {key}");
+            }
+            assert!(a["force_without_friction"].is_null() && a["handbook"].is_null());
+            assert!(!b["force_without_friction"].is_null());
+        }
+        let one = |wish: Wish| run(&wish)["root"]["phases"][0].clone();
+        let base = &all["root"]["phases"][0];
+        let root = one(Wish {
+            root: true,
+            ..Wish::default()
+        });
+        assert_eq!(root["peak"], base["peak"], "{name}");
+        assert!(root["lost_in_snaps"].is_null());
+        let work = one(Wish {
+            work: true,
+            ..Wish::default()
+        });
+        assert_eq!(work["work"], base["work"], "{name}");
+        assert_eq!(work["lost_in_snaps"], base["lost_in_snaps"], "{name}");
+        assert!(work["peak"].is_null());
+        let seen = one(Wish {
+            samples: 3,
+            ..Wish::default()
+        });
+        assert_eq!(seen["history"], base["history"], "{name}");
+        assert!(seen["peak"].is_null());
+    }
 }

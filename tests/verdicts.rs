@@ -66,7 +66,7 @@ fn every_design_is_decided() {
             critical: true,
         };
         let d = classify(&s, &ask).unwrap();
-        let f = forces(&s, &Wish::default(), &Ask::default()).unwrap();
+        let f = forces(&s, &Wish::all(6, 0), &Ask::default()).unwrap();
         assert_eq!(f.pawls.len(), s.pawls.len());
         let took = begin.elapsed();
         if took > Duration::from_secs(4) || d.undecided() {
@@ -103,7 +103,7 @@ fn hook(seed: u64) -> Scene {
     let (tip, s, u, length) = (
         r.range(-3, 1),
         r.range(1, 8),
-        r.range(-2, 8),
+        r.range(0, 8),
         r.range(16, 40),
     );
     let high = a + 4 + s + r.range(1, 4);

@@ -44,9 +44,10 @@ pub struct ForcesDocument {
     pub peak: Option<PeakDocument>,
     /// The same a pawl.
     pub pawls: Vec<PawlForces>,
-    /// What the root feels, all pawls together.
+    /// What the root feels, all pawls together; null where nothing of it was asked for.
     pub root: Option<RootForces>,
-    /// Assembly against disassembly; null where nothing was modelled or there is no way back.
+    /// Assembly against disassembly; null where it was not asked for, nothing was modelled or there
+    /// is no way back.
     pub comparison: Option<Comparison>,
     /// What to draw.
     #[serde(skip)]
@@ -131,13 +132,14 @@ pub struct SegmentForces {
     pub contact: ContactDocument,
     /// The contact force.
     pub force: Bound,
-    /// The contact force without friction; null where the scene has none.
+    /// The contact force without friction; null where the scene has none, or it was not asked for.
     pub force_without_friction: Option<Bound>,
     /// The torque at the hinge.
     pub torque: Bound,
     /// When the force peaks.
     pub time: When,
-    /// The snap-fit handbook's formula beside the model, at the largest deflection.
+    /// The snap-fit handbook's formula beside the model, at the largest deflection; null where it
+    /// was not asked for.
     pub handbook: Option<Handbook>,
 }
 
@@ -166,16 +168,17 @@ pub struct PhaseForces {
     pub outcome: &'static str,
     /// The root's velocity.
     pub velocity: [Num; 2],
-    /// With friction as the scene has it.
-    pub peak: RootPeak,
-    /// Without friction; null where the scene has none.
+    /// With friction as the scene has it; null where it was not asked for.
+    pub peak: Option<RootPeak>,
+    /// Without friction; null where the scene has none, or it was not asked for.
     pub peak_without_friction: Option<RootPeak>,
-    /// What the drive puts in: null where it is not bounded, as where friction holds at last.
+    /// What the drive puts in: null where it is not bounded, as where friction holds at last, or
+    /// where it was not asked for.
     pub work: Option<Bound>,
     /// Without friction: what goes into the springs.
     pub work_without_friction: Option<Bound>,
-    /// Spring energy set free by snaps.
-    pub lost_in_snaps: Bound,
+    /// Spring energy set free by snaps; null where the work was not asked for.
+    pub lost_in_snaps: Option<Bound>,
     /// Evenly spaced instants strictly inside the phase.
     pub history: Vec<Sample>,
 }
@@ -238,13 +241,22 @@ pub struct Comparison {
     pub easier: &'static str,
 }
 
-/// What to enclose.
+/// What to enclose. The peaks of force and torque, by pawl and segment, always are; all else
+/// costs searches of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
     /// Significant decimals of every enclosure.
     pub digits: u32,
     /// Instants of the history a phase.
     pub samples: u32,
+    /// What the root feels: its peaks a phase and on the way back.
+    pub root: bool,
+    /// The drive's work.
+    pub work: bool,
+    /// Every peak without friction too.
+    pub smooth: bool,
+    /// The handbook's formula.
+    pub handbook: bool,
     /// Collect the points of a picture too.
     pub draw: bool,
 }
@@ -254,8 +266,31 @@ impl Default for Wish {
         Wish {
             digits: 6,
             samples: 0,
+            root: false,
+            work: false,
+            smooth: false,
+            handbook: false,
             draw: false,
         }
+    }
+}
+
+impl Wish {
+    /// All that can be enclosed, with so many digits and samples; no picture.
+    pub fn all(digits: u32, samples: u32) -> Wish {
+        Wish {
+            digits,
+            samples,
+            root: true,
+            work: true,
+            smooth: true,
+            handbook: true,
+            draw: false,
+        }
+    }
+    /// Whether anything is wanted that is told phase by phase.
+    fn phases(&self) -> bool {
+        self.root || self.work || self.draw || self.samples > 0
     }
 }
 
@@ -297,6 +332,9 @@ pub fn forces(scene: &Scene, wish: &Wish, ask: &Ask) -> Result<ForcesDocument, P
     let ground = Ground::new(scene, ask.deadline);
     let way = Way::new(scene, &ground, &run, wish);
     way.pawls(&mut out);
+    if !wish.phases() {
+        return Ok(out);
+    }
     let mut phases: Vec<PhaseForces> = Vec::new();
     for k in 0..run.phases.len() {
         phases.push(way.phase(k, &mut out.drawing));
@@ -304,6 +342,7 @@ pub fn forces(scene: &Scene, wish: &Wish, ask: &Ask) -> Result<ForcesDocument, P
     let goes_back = scene.motions.contains(&Motion::Reverse);
     let mut way_back = None;
     if !goes_back
+        && (wish.root || wish.draw)
         && let (Some(start), Some((directions, distance2))) =
             (Start::after(&run), family(scene, &run))
         && let Some(v) = directions.first()
@@ -369,7 +408,9 @@ fn comparison(
         }
     };
     let most = |list: &mut dyn Iterator<Item = &PhaseForces>| {
-        list.map(|p| read(&p.peak.resistance)).reduce(Peak::max)
+        list.filter_map(|p| p.peak.as_ref())
+            .map(|p| read(&p.resistance))
+            .reduce(Peak::max)
     };
     let there = most(&mut phases.iter().filter(|p| !is_back(p)))?;
     let back = most(&mut phases.iter().filter(is_back).chain(way_back))?;
@@ -504,11 +545,11 @@ impl<'a> Way<'a> {
                     }
                     let Some(p) = p else { continue };
                     push = Some(higher(push, p.clone()));
-                    if self.mu.sign() > 0 {
+                    if self.wish.smooth && self.mu.sign() > 0 {
                         smooth = Some(higher(smooth, force(s, k, &Rat::zero(), self.goal)));
                     }
                     let t = torque(s, k, self.goal).peak;
-                    if t != Peak::zero() {
+                    if self.wish.handbook && t != Peak::zero() {
                         beside = handbook(s, k, &self.mu, digits).or(beside);
                     }
                     twist = twist.max(t);
@@ -585,13 +626,17 @@ impl<'a> Way<'a> {
     /// The slides of one phase, with friction or without.
     fn slides(&self, phase: usize, smooth: bool) -> Vec<Slide<'_>> {
         let mut out = Vec::new();
+        // Only the root's search asks how high each force goes.
+        let searched = self.wish.root;
         for (s, p) in self.slid.iter().zip(&self.peaks) {
             let Some(rig) = self.rigs[s.pawl].as_ref().filter(|_| s.phase == phase) else {
                 continue;
             };
             let rig = &rig[usize::from(smooth)];
             let k = &rig.stiffness;
-            let peak = if smooth && self.mu.sign() > 0 {
+            let peak = if !searched {
+                None
+            } else if smooth && self.mu.sign() > 0 {
                 Some(force(s, k, &rig.mu, 16).peak)
             } else {
                 p.as_ref().map(|p| p.peak.clone())
@@ -616,22 +661,26 @@ impl<'a> Way<'a> {
         let phase = &self.run.phases[k];
         let end = &self.run.outcome;
         let here = end.phase == k;
+        let wish = self.wish;
         let rubbed = self.slides(k, false);
-        let mut high = extremes(&rubbed, self.goal);
-        let by = end.pawl.filter(|i| here && self.ended(*i));
-        if by.is_some_and(|i| self.rigs[i].is_some()) {
-            // Held for good: no force moves it on.
-            high.resistance = Peak::Unbounded;
-            high.force = Peak::Unbounded;
-            high.torque = Peak::Unbounded;
-        }
+        let high = wish.root.then(|| {
+            let mut high = extremes(&rubbed, self.goal);
+            let by = end.pawl.filter(|i| here && self.ended(*i));
+            if by.is_some_and(|i| self.rigs[i].is_some()) {
+                // Held for good: no force moves it on.
+                high.resistance = Peak::Unbounded;
+                high.force = Peak::Unbounded;
+                high.torque = Peak::Unbounded;
+            }
+            high
+        });
         let rubs = self.mu.sign() > 0;
         let smooth = if rubs {
             self.slides(k, true)
         } else {
             Vec::new()
         };
-        let without = rubs.then(|| extremes(&smooth, self.goal));
+        let without = (rubs && wish.root && wish.smooth).then(|| extremes(&smooth, self.goal));
         let spent = |slides: &[Slide<'_>]| {
             slides
                 .iter()
@@ -653,11 +702,13 @@ impl<'a> Way<'a> {
                 Num::of_rat(&phase.velocity.x),
                 Num::of_rat(&phase.velocity.y),
             ],
-            peak: self.root_peak(k, &high),
+            peak: high.map(|e| self.root_peak(k, &e)),
             peak_without_friction: without.map(|e| self.root_peak(k, &e)),
-            work: spent(&rubbed).map(bound),
-            work_without_friction: rubs.then(|| spent(&smooth).map(bound)).flatten(),
-            lost_in_snaps: bound(self.lost(k)),
+            work: wish.work.then(|| spent(&rubbed).map(bound)).flatten(),
+            work_without_friction: (rubs && wish.work && wish.smooth)
+                .then(|| spent(&smooth).map(bound))
+                .flatten(),
+            lost_in_snaps: wish.work.then(|| bound(self.lost(k))),
             history: self.history(k, &rubbed, &smooth),
         }
     }

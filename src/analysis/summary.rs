@@ -134,22 +134,29 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
         }
         table(&rows, &mut out);
     }
-    if let Some(root) = &doc.root {
+    if let Some(root) = doc.root.as_ref().filter(|r| r.phases.iter().any(has_more)) {
         let _ = writeln!(out, "\n{}", bold(style, "root, all pawls together"));
         let head = [
             "phase", "velocity", "outcome", "resists", "helps", "force", "torque", "work",
         ];
         let mut rows = vec![head.map(str::to_owned)];
         let row = |p: &PhaseForces| {
+            let of = |f: fn(&super::forces::RootPeak) -> &Bound| {
+                let peak = p.peak.as_ref();
+                peak.map_or_else(String::new, |e| decimal(f(e)))
+            };
+            let worked = p.lost_in_snaps.as_ref();
             [
                 p.phase.map_or_else(|| "back".to_owned(), |k| k.to_string()),
                 format!("({}, {})", short(&p.velocity[0]), short(&p.velocity[1])),
                 p.outcome.to_owned(),
-                decimal(&p.peak.resistance),
-                decimal(&p.peak.help),
-                decimal(&p.peak.force),
-                decimal(&p.peak.torque),
-                p.work.as_ref().map_or_else(|| "—".to_owned(), decimal),
+                of(|e| &e.resistance),
+                of(|e| &e.help),
+                of(|e| &e.force),
+                of(|e| &e.torque),
+                worked.map_or_else(String::new, |_| {
+                    p.work.as_ref().map_or_else(|| "—".to_owned(), decimal)
+                }),
             ]
         };
         rows.extend(root.phases.iter().chain(&root.way_back).map(row));
@@ -169,6 +176,11 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
         );
     }
     out
+}
+
+/// Whether a phase has more than its history.
+fn has_more(p: &PhaseForces) -> bool {
+    p.peak.is_some() || p.lost_in_snaps.is_some()
 }
 
 fn table<const N: usize>(rows: &[[String; N]], out: &mut String) {

@@ -106,10 +106,26 @@ pub(crate) struct Forces {
     /// Significant digits of every enclosure
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) digits: u32,
-    /// Instants of each phase at which the histories are given
-    #[arg(long, default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=10000))]
-    pub(crate) samples: u32,
-    /// Draw force over travel as SVG, to PATH
+    /// Add what the root feels, all pawls together: its peaks, the way back run too, and assembly
+    /// against disassembly (several times a simulation)
+    #[arg(long)]
+    pub(crate) root: bool,
+    /// Add the drive's work and what snaps set free
+    #[arg(long)]
+    pub(crate) work: bool,
+    /// Add the histories: all loads at N instants of each phase
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=10000))]
+    pub(crate) samples: Option<u32>,
+    /// Add each value without friction beside it
+    #[arg(long)]
+    pub(crate) without_friction: bool,
+    /// Add the snap-fit handbook's formula, and why it parts from the model
+    #[arg(long)]
+    pub(crate) handbook: bool,
+    /// Add all of these, the histories at 8 instants of each phase
+    #[arg(long)]
+    pub(crate) all: bool,
+    /// Draw force over travel as SVG, to PATH (the way back run too)
     #[arg(long, value_name = "PATH")]
     pub(crate) svg: Option<PathBuf>,
     /// What to print [default: summary on a terminal, else json]

@@ -129,7 +129,11 @@ pub(super) fn run_forces(args: &Forces) -> Result<u8, Failure> {
     let file = read(&args.common)?;
     let wish = analysis::Wish {
         digits: args.digits,
-        samples: args.samples,
+        samples: args.samples.unwrap_or(if args.all { 8 } else { 0 }),
+        root: args.root || args.all,
+        work: args.work || args.all,
+        smooth: args.without_friction || args.all,
+        handbook: args.handbook || args.all,
         draw: args.svg.is_some(),
     };
     let (ask, _) = ask(&args.engine)?;
