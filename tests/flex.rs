@@ -254,6 +254,50 @@ fn safe_paths_never_collide_and_lose_little() {
     }
 }
 
+/// Up to the first contact no bodies overlap; just after it the two that it names do.
+#[test]
+fn the_first_contact_is_where_overlap_begins() {
+    let options = FlexOptions {
+        contact: true,
+        ..FlexOptions::default()
+    };
+    let mut met = 0;
+    for (family, bodies) in [("jit", 6), ("wall", 7), ("chain", 4), ("can", 10)] {
+        let s = generate(family, bodies, 2).unwrap();
+        let flexed = flex(&s, &options);
+        let found: Vec<usize> = (0..flexed.steps.len())
+            .filter(|k| flexed.steps[*k].contact.is_some())
+            .collect();
+        assert!(found.len() < 2, "{family}: only the first is asked for");
+        let Some(&k) = found.first() else { continue };
+        met += 1;
+        let contact = flexed.steps[k].contact.as_ref().unwrap();
+        let time = contact.time.enclosure(40).0;
+        let step = &flexed.configurations[k..k + 2];
+        let at =
+            |s: &Structure, b: usize, t: &Rat| between(&s.bodies[b], &step[0][b], &step[1][b], t);
+        let little = r(1, 1_000_000);
+        let (one, two) = (contact.edge.0, contact.vertex.0);
+        let after = &time + &little;
+        assert!(
+            interiors_intersect(&at(&s, one, &after), &at(&s, two, &after)),
+            "{family}"
+        );
+        for n in 1..8 {
+            let before = (&time - &little) * r(n, 7);
+            for a in 0..s.bodies.len() {
+                for b in a + 1..s.bodies.len() {
+                    assert!(
+                        !interiors_intersect(&at(&s, a, &before), &at(&s, b, &before)),
+                        "{family}: {a} and {b} before the first contact"
+                    );
+                }
+            }
+        }
+    }
+    assert!(met > 1, "contacts are what this is about: {met}");
+}
+
 /// No safe path may pass the outer bound, and for tight joints the two are near each other. The
 /// block under a ceiling has its bound by hand: a joint on every side, 1/10 of room.
 #[test]

@@ -32,8 +32,8 @@ pub struct Contact {
     pub edge: (usize, usize),
     /// The vertex: its body and index.
     pub vertex: (usize, usize),
-    /// When, as a part of the motion; None where only subdivision ended.
-    pub time: Option<Algebraic>,
+    /// When, as a part of the motion.
+    pub time: Algebraic,
 }
 
 /// What a proof looked at.
@@ -85,8 +85,20 @@ impl<'a> Motion<'a> {
     /// Proves the motion free of collision.
     ///
     /// # Errors
-    /// The contacts found, at most one a pair of bodies.
+    /// Contacts, one of each pair of bodies that meet.
     pub(crate) fn prove(&self) -> Result<ProofSize, Vec<Contact>> {
+        self.look(false)
+    }
+
+    /// The contact that comes first, if there is any; of contacts at one time the one of the first
+    /// bodies. Costs the roots of every passing, which [`Motion::prove`] ends at.
+    pub(crate) fn first_contact(&self) -> Option<Contact> {
+        let contacts = self.look(true).err()?;
+        contacts.into_iter().min_by(|a, b| a.time.cmp(&b.time))
+    }
+
+    /// Looks at every pair of bodies: for any contact, or for the first.
+    fn look(&self, first: bool) -> Result<ProofSize, Vec<Contact>> {
         let mut size = ProofSize::default();
         let mut contacts = Vec::new();
         let boxes: Vec<Box2> = (0..self.placed.len()).map(|b| self.swept(b)).collect();
@@ -96,11 +108,13 @@ impl<'a> Motion<'a> {
                 continue;
             }
             size.bodies += 1;
-            let found = self
-                .one_way(a, b, &mut size)
-                .and_then(|()| self.one_way(b, a, &mut size));
-            if let Err(contact) = found {
-                contacts.push(contact);
+            for (one, two) in [(a, b), (b, a)] {
+                if let Err(contact) = self.one_way(one, two, first, &mut size) {
+                    contacts.push(contact);
+                    if !first {
+                        break;
+                    }
+                }
             }
         }
         if contacts.is_empty() {
@@ -127,8 +141,16 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Vertices of `two` against edges of `one`.
-    fn one_way(&self, one: usize, two: usize, size: &mut ProofSize) -> Result<(), Contact> {
+    /// Vertices of `two` against edges of `one`; a contact that is found ends it, unless the first
+    /// is asked for.
+    fn one_way(
+        &self,
+        one: usize,
+        two: usize,
+        first: bool,
+        size: &mut ProofSize,
+    ) -> Result<(), Contact> {
+        let mut earliest: Option<Contact> = None;
         let (s1, s2) = (&self.scaffold.shapes[one], &self.scaffold.shapes[two]);
         let (p1, p2) = (&self.placed[one], &self.placed[two]);
         let (w1, w2) = (self.near_turn[one], self.near_turn[two]);
@@ -198,21 +220,22 @@ impl<'a> Motion<'a> {
                 if cleared(&exact, 0) {
                     continue;
                 }
-                let crossing = entry(&exact);
-                if let Crossing::None = crossing {
+                let Some(time) = entry(&exact) else {
                     continue;
+                };
+                if earliest.as_ref().is_none_or(|c| time < c.time) {
+                    earliest = Some(Contact {
+                        edge: (one, k),
+                        vertex: (two, v),
+                        time,
+                    });
                 }
-                return Err(Contact {
-                    edge: (one, k),
-                    vertex: (two, v),
-                    time: match crossing {
-                        Crossing::At(t) => Some(t),
-                        _ => None,
-                    },
-                });
+                if !first {
+                    return earliest.map_or(Ok(()), Err);
+                }
             }
         }
-        Ok(())
+        earliest.map_or(Ok(()), Err)
     }
 
     /// The three functions of a vertex and an edge, times E₁E₂ and positive constants.
@@ -460,22 +483,14 @@ fn surely_negative<T: Number>(v: &T) -> bool {
     opposite.positive()
 }
 
-/// What exact roots say.
-enum Crossing {
-    /// The vertex never passes.
-    None,
-    /// It passes first at this time.
-    At(Algebraic),
-}
-
 /// The first time at which the distance turns from non-negative to negative with the foot on the
 /// closed edge.
-fn entry(f: &Functions<Rat>) -> Crossing {
+fn entry(f: &Functions<Rat>) -> Option<Algebraic> {
     let poly = |b: &[Rat; 6]| Poly::from_rats(&powers(b));
     let (d, before, past) = (poly(&f.distance), poly(&f.before), poly(&f.past));
     let on_edge = |t: &Algebraic| t.sign_of(&before) <= 0 && t.sign_of(&past) <= 0;
     if d.is_zero() {
-        return Crossing::None;
+        return None;
     }
     let (zero, one) = (Rat::zero(), Rat::one());
     let roots = d.real_roots_in(&zero, &one);
@@ -491,11 +506,11 @@ fn entry(f: &Functions<Rat>) -> Crossing {
         let turns = sign < 0 && sign_before >= 0;
         let starts_behind = pair[0].sign_of(&d) < 0;
         if turns && !starts_behind && on_edge(&pair[0]) {
-            return Crossing::At(pair[0].clone());
+            return Some(pair[0].clone());
         }
         sign_before = sign;
     }
-    Crossing::None
+    None
 }
 
 /// From the Bernstein basis of degree 5 back to powers.

@@ -69,6 +69,24 @@ pub struct StepDocument {
     /// On a safe path: what was proven to be free of collision throughout the step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub proof: Option<ProofDocument>,
+    /// With `--contact`: the first contact of the whole path, in the step in which it comes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactDocument>,
+}
+
+/// A vertex that passes into a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct ContactDocument {
+    /// The body it passes into.
+    pub edge_body: String,
+    /// The edge it passes, counted as listed.
+    pub edge: usize,
+    /// The vertex's body.
+    pub vertex_body: String,
+    /// The vertex, counted as listed.
+    pub vertex: usize,
+    /// When, exactly: 0 at the step's begin, 1 at its end.
+    pub time: Num,
 }
 
 /// An outer bound: no motion without collision moves the objective farther.
@@ -173,6 +191,13 @@ impl FlexDocument {
                         bodies: p.bodies,
                         pairs: p.pairs,
                         exact: p.exact,
+                    }),
+                    contact: s.contact.as_ref().map(|c| ContactDocument {
+                        edge_body: structure.bodies[c.edge.0].name.clone(),
+                        edge: c.edge.1,
+                        vertex_body: structure.bodies[c.vertex.0].name.clone(),
+                        vertex: c.vertex.1,
+                        time: Num::of(&c.time),
                     }),
                 })
                 .collect(),

@@ -13,7 +13,7 @@
 
 use super::branch::{self, Solved};
 use super::model::{Form, Row, Scaffold};
-use super::motion::ProofSize;
+use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
 use super::shape::{Placed, Pose, double};
 use super::types::{Path, Structure};
@@ -46,6 +46,8 @@ pub struct FlexOptions<'a> {
     pub time_limit: Option<Duration>,
     /// Whether certificates are checked by the independent verifier.
     pub verify: bool,
+    /// Whether the exact first contact is looked for, up to which the path is free of collision.
+    pub contact: bool,
     /// Shown every program before it is solved.
     pub programs: Option<&'a dyn Fn(&lp::Model)>,
     /// Told of every step as it begins.
@@ -122,6 +124,8 @@ pub struct Step {
     pub certificate: serde_json::Value,
     /// What the proof of a safe step looked at; None where nothing was proven.
     pub proof: Option<ProofSize>,
+    /// Where asked for, the first contact of the whole path, if it comes in this step.
+    pub contact: Option<Contact>,
     /// Exact gain in displacement.
     pub gain: Rat,
     /// Bits of the longest number of any pose afterwards.
@@ -176,6 +180,9 @@ pub(crate) struct Run<'a> {
     pub(crate) deadline: Option<Instant>,
     /// No vertex is farther from its body's reference point.
     reach: f64,
+    /// Part of the gain asked for that the finest grain is: what rounding takes from bodies in a
+    /// row adds up.
+    fine: f64,
     /// The last optimal basis: places of the columns, and of rows by pair.
     memory: RefCell<Option<Memory>>,
 }
@@ -233,6 +240,7 @@ impl<'a> Run<'a> {
         Run {
             structure,
             reach,
+            fine: 0.5 / structure.bodies.len().max(1) as f64,
             scaffold,
             options,
             memory: RefCell::new(None),
@@ -304,6 +312,8 @@ impl<'a> Run<'a> {
         let mut last_gain = 0.0;
         // A safe step is guessed to gain a tenth of the one before.
         let mut promise = f64::INFINITY;
+        // Whether no contact came yet.
+        let mut clear = true;
         let mut pairs = Vec::new();
         for k in 0..rules.most {
             if self.late() {
@@ -356,12 +366,29 @@ impl<'a> Run<'a> {
                     _ => Ending::Undecided,
                 };
             }
-            if let Some(next) = &taken.next {
-                poses.clone_from(next);
+            let next = taken.next.unwrap_or_else(|| poses.clone());
+            let reached = self.scaffold.displacement(&next);
+            let gain = &reached - &out.displacement;
+            if rules.path == Path::Safe && !stopped && gain.sign() < 0 {
+                // Nothing is violated on a safe path, so nothing calls for a step back: it comes
+                // from what is held back. Held back less, there may yet be something to gain.
+                if promise > 0.0 {
+                    promise = 0.0;
+                    continue;
+                }
+                out.ending = Ending::Converged;
+                break;
+            }
+            let contact = if clear && self.options.contact && taken.proof.is_none() {
+                Motion::new(&self.scaffold, &poses, &next).first_contact()
+            } else {
+                None
+            };
+            clear &= contact.is_none();
+            if !stopped {
+                poses = next;
                 out.configurations.push(poses.clone());
             }
-            let reached = self.scaffold.displacement(&poses);
-            let gain = &reached - &out.displacement;
             out.displacement = reached;
             out.steps.push(Step {
                 objective: taken.solved.objective,
@@ -376,24 +403,22 @@ impl<'a> Run<'a> {
                 verified: taken.solved.verified,
                 certificate: taken.solved.certificate,
                 proof: taken.proof,
+                contact,
                 gain: gain.clone(),
                 bits: poses.iter().map(Pose::bits).max().unwrap_or(0),
             });
             if stopped {
                 break;
             }
-            last_gain = double(&gain);
+            let before = std::mem::replace(&mut last_gain, double(&gain));
             promise = last_gain / 10.0;
-            let safe = rules.path == Path::Safe;
-            if safe && gain.sign() < 0 && out.configurations.len() > 1 {
-                // Nothing is violated on a safe path, so nothing calls for a step back.
-                out.configurations.pop();
-                poses.clone_from(&out.configurations[out.configurations.len() - 1]);
-                out.displacement = &out.displacement - &gain;
-            }
-            if gain.abs() < rules.gain || (safe && gain.sign() < 0) {
+            if gain.abs() < rules.gain {
                 out.ending = Ending::Converged;
                 break;
+            }
+            if last_gain.abs() > before.abs() / 2.0 && last_gain.signum() != before.signum() {
+                // Back and forth: what is gained and lost is rounding.
+                self.fine /= 16.0;
             }
         }
         let placed = self.scaffold.place(&poses);
@@ -420,7 +445,7 @@ impl<'a> Run<'a> {
     /// numbers make quick programs, and at last finer than the gain at which stepping ends.
     pub(crate) fn grain(&self, promise: f64) -> Grain {
         let rules = &self.structure.step;
-        let least = double(&rules.gain) / 2.0;
+        let least = double(&rules.gain) * self.fine;
         let most = double(&rules.violation) * GRAIN_PARTS.0;
         Grain::of(
             (promise.abs() * GRAIN_PARTS.1).min(most).max(least),
@@ -491,12 +516,19 @@ impl<'a> Run<'a> {
         scale: f64,
         grain: Grain,
     ) -> Vec<Pose> {
+        let turns = |k: usize| match self.scaffold.forms[k] {
+            Form::Fixed => None,
+            _ => grain.turned(&poses[k], direction[k][2] * scale),
+        };
+        let turns: Vec<Option<(f64, f64)>> = (0..poses.len()).map(turns).collect();
+        let turned = shared(&turns);
         let each = poses.iter().zip(direction).zip(&self.scaffold.forms);
-        each.map(|((pose, d), form)| match form {
-            Form::Fixed => pose.clone(),
-            _ => grain.advance(pose, d.map(|v| v * scale)),
-        })
-        .collect()
+        each.zip(turned)
+            .map(|(((pose, d), form), turned)| match form {
+                Form::Fixed => pose.clone(),
+                _ => grain.advance(pose, d.map(|v| v * scale), turned),
+            })
+            .collect()
     }
 
     /// Whether a pair is violated by more than a distance, exactly.
@@ -558,24 +590,23 @@ impl Grain {
         2f64.powi(1 - self.place_bits as i32)
     }
 
-    /// A pose moved by (dx, dy, dθ) and rounded. Doubles are good enough for what is rounded
-    /// anyway; a motion that is no number leaves the pose as it is.
-    pub(crate) fn advance(&self, pose: &Pose, by: [f64; 3]) -> Pose {
+    /// The range for tan(θ/2) of a pose turned by dθ; None where it does not turn. Doubles are
+    /// good enough for what is rounded anyway.
+    fn turned(&self, pose: &Pose, by: f64) -> Option<(f64, f64)> {
+        let half = by / 2.0;
+        let u = double(&pose.tan_half);
+        let turned = (u + half) / (1.0 - u * half);
+        let radius = self.turn * (1.0 + turned * turned);
+        (half != 0.0 && turned.is_finite()).then_some((turned - radius, turned + radius))
+    }
+
+    /// A pose moved by (dx, dy), rounded, and turned to a given tan(θ/2). A motion that is no
+    /// number leaves the pose as it is.
+    pub(crate) fn advance(&self, pose: &Pose, by: [f64; 3], turned: Option<Rat>) -> Pose {
         if by.iter().any(|v| !v.is_finite()) {
             return pose.clone();
         }
-        let half = by[2] / 2.0;
-        let u = double(&pose.tan_half);
-        let turned = (u + half) / (1.0 - u * half);
-        let tan_half = if half == 0.0 || !turned.is_finite() {
-            pose.tan_half.clone()
-        } else {
-            let radius = self.turn * (1.0 + turned * turned);
-            simplest(
-                &Rat::from_f64(turned - radius),
-                &Rat::from_f64(turned + radius),
-            )
-        };
+        let tan_half = turned.unwrap_or_else(|| pose.tan_half.clone());
         let shift = |at: &Rat, d: f64| {
             if d == 0.0 {
                 return at.clone();
@@ -592,6 +623,35 @@ impl Grain {
             tan_half,
         }
     }
+}
+
+/// A simple fraction in each range, as few different ones as there can be: bodies that round alike
+/// stand exactly parallel, and their rows become dependent rather than nearly so.
+fn shared(ranges: &[Option<(f64, f64)>]) -> Vec<Option<Rat>> {
+    let mut order: Vec<(f64, f64, usize)> = ranges
+        .iter()
+        .enumerate()
+        .filter_map(|(k, r)| r.map(|(lo, hi)| (lo, hi, k)))
+        .collect();
+    order.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
+    let mut out = vec![None; ranges.len()];
+    let mut begin = 0;
+    while begin < order.len() {
+        // All ranges that hold the end of the first one meet.
+        let hi = order[begin].1;
+        let mut end = begin;
+        let mut lo = f64::NEG_INFINITY;
+        while end < order.len() && order[end].0 <= hi {
+            lo = lo.max(order[end].0);
+            end += 1;
+        }
+        let one = simplest(&Rat::from_f64(lo), &Rat::from_f64(hi));
+        for (_, _, k) in &order[begin..end] {
+            out[*k] = Some(one.clone());
+        }
+        begin = end;
+    }
+    out
 }
 
 /// The fraction of least denominator in [lo, hi] (lo ≤ hi), by continued fractions.

@@ -34,6 +34,9 @@ pub(crate) struct FlexArgs {
     /// Bound the flex from outside too: what no motion without collision can exceed
     #[arg(long)]
     bound: bool,
+    /// Give the exact first contact, up to which the path is free of collision
+    #[arg(long)]
+    contact: bool,
     /// Leave the certificates unchecked
     #[arg(long)]
     no_verify: bool,
@@ -162,6 +165,7 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         },
         time_limit: args.time_limit,
         verify: !args.no_verify && accuracy != lp::Accuracy::Float,
+        contact: args.contact,
         progress: Some(&tell),
     };
     let flexed = flex::flex(&structure, &options);
