@@ -92,7 +92,7 @@ pub(crate) struct Kernel {
     pub(super) big_root_ids: FastMap<([Int; 3], u8), NumId>,
     /// Values of the few numbers that were asked for exactly.
     pub(super) exact: FastMap<NumId, Algebraic>,
-    /// floor(x·2^FINE) of those that had near neighbours.
+    /// Cells of 2^-FINE of those that had near neighbours; see `make_fine`.
     pub(super) fine: FastMap<NumId, Int>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,

@@ -158,17 +158,16 @@ impl Kernel {
             return Ordering::Equal;
         }
         self.stats.numbers_exact += 1;
-        if let (Some(a), Some(b)) = (self.fine.get(&x), self.fine.get(&y))
-            && a != b
-        {
-            return a.cmp(b);
+        if let Some(order) = self.cells_apart(x, y) {
+            return order;
         }
         if self.same_root(x, y) || self.same_root(y, x) {
             self.unite(x, y);
             return Ordering::Equal;
         }
-        let order = self.fine(x).clone().cmp(self.fine(y));
-        if order.is_ne() {
+        self.make_fine(x);
+        self.make_fine(y);
+        if let Some(order) = self.cells_apart(x, y) {
             return order;
         }
         let (a, b) = (self.exact(x).clone(), self.exact(y).clone());
@@ -219,15 +218,30 @@ impl Kernel {
         self.nums[y as usize].parent = x;
     }
 
-    /// floor(x·2^FINE), made once.
-    fn fine(&mut self, x: NumId) -> &Int {
+    /// Makes the cell of a number: an integer c with c ≤ x·2^FINE < c + 3/2.
+    ///
+    /// That is all that is asked of an enclosure lo ≤ x ≤ lo + 2^-(FINE+1), with c = floor(lo·2^FINE): equal
+    /// numbers that came about in different ways may have neighbouring cells.
+    fn make_fine(&mut self, x: NumId) {
         if !self.fine.contains_key(&x) {
             let (lo, _) = self.exact(x).enclosure(FINE + 1);
             let scaled = lo.numer().shl(u64::from(FINE));
             let cell = scaled.div_rem_floor(lo.denom()).0;
             self.fine.insert(x, cell);
         }
-        &self.fine[&x]
+    }
+
+    /// The order of two numbers whose cells are known and prove it: c + 2 ≤ d gives x·2^FINE < c + 3/2 < d ≤
+    /// y·2^FINE. Equal and neighbouring cells prove nothing.
+    fn cells_apart(&self, x: NumId, y: NumId) -> Option<Ordering> {
+        let (c, d) = (self.fine.get(&x)?, self.fine.get(&y)?);
+        let order = c.cmp(d);
+        let apart = match order {
+            Ordering::Less => d - c > Int::one(),
+            Ordering::Greater => c - d > Int::one(),
+            Ordering::Equal => false,
+        };
+        apart.then_some(order)
     }
 
     /// Exact order of a number and a double.

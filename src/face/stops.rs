@@ -236,7 +236,7 @@ impl Tracer<'_> {
         let (hull, most) = match me.carrier {
             Carrier::Graph(c) => (
                 self.k.hull(c, from, to),
-                if from < mid && mid < to {
+                if from < mid && mid < to && self.parts(&me, mid) {
                     crowd(depth)
                 } else {
                     usize::MAX
@@ -254,6 +254,13 @@ impl Tracer<'_> {
             self.windows[w as usize].kids = kids;
         }
         self.near = near;
+    }
+
+    /// Whether a cut surely lies between the ends of an item, l < mid ≤ r. The ends belong to its outermost
+    /// windows without a test, so whatever else happens at an end must belong there too: the item that is
+    /// hardly wider than the enclosures of its ends cannot be halved.
+    fn parts(&self, item: &Item, mid: f64) -> bool {
+        self.k.enclosure(item.l).1 < mid && mid <= self.k.enclosure(item.r).0
     }
 
     /// The items that may meet this one inside a hull; false as soon as there are more than `most`.
