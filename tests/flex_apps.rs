@@ -1,4 +1,5 @@
 //! The applications of Lensgraf et al. 2019 (PF §IV, §VI), each with facts that could fail.
+#![allow(clippy::unwrap_used)]
 
 use snapfit::flex::apps::brace::{Change, brace, with_question};
 use snapfit::flex::apps::constraints::{constraints, decimal};

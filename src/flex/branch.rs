@@ -162,6 +162,9 @@ pub(crate) fn solve(
 
 type Node = (Vec<Option<u8>>, Outcome);
 
+/// Solves the program with the sides that were chosen.
+type Solver<'a> = dyn Fn(&[Option<u8>]) -> (Model, Outcome) + 'a;
+
 fn most_promising(open: &[Node]) -> Option<usize> {
     (0..open.len()).max_by(|&a, &b| open[a].1.objective.cmp(&open[b].1.objective))
 }
@@ -170,7 +173,7 @@ fn most_promising(open: &[Node]) -> Option<usize> {
 fn expand(
     taken: &[Option<u8>],
     k: usize,
-    solved: &dyn Fn(&[Option<u8>]) -> (Model, Outcome),
+    solved: &Solver<'_>,
     open: &mut Vec<Node>,
 ) -> usize {
     for choice in 0..4 {

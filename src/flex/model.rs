@@ -322,7 +322,7 @@ impl Scaffold {
             }
             sum = sum + &t.dx * &moved.x + &t.dy * &moved.y;
             if !t.dtheta.is_zero() {
-                sum = sum + &t.dtheta * &(turned_by(from, to) * Rat::from(2));
+                sum += &t.dtheta * &(turned_by(from, to) * Rat::from(2));
             }
         }
         sum
@@ -383,7 +383,7 @@ impl Scaffold {
     }
 
     /// The entries of a row by column.
-    pub(crate) fn entries<'a>(&self, row: &'a Row) -> Vec<(usize, Int)> {
+    pub(crate) fn entries(&self, row: &Row) -> Vec<(usize, Int)> {
         let one = self.column(row.pair.line_body as usize);
         let two = self.column(row.pair.point_body as usize);
         let mut out = Vec::with_capacity(6);

@@ -433,11 +433,11 @@ impl<T: Number> Functions<T> {
         fn halves<T: Number>(b: &[T; 6]) -> ([T; 6], [T; 6]) {
             let mut work = b.clone();
             let mut left = b.clone();
-            for level in 1..6 {
+            for (level, first) in left.iter_mut().enumerate().skip(1) {
                 for k in 0..6 - level {
                     work[k] = (work[k].clone() + work[k + 1].clone()).half();
                 }
-                left[level] = work[0].clone();
+                *first = work[0].clone();
             }
             // Now work[k] is the point of level 5 − k that ends at the right.
             (left, work)

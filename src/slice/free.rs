@@ -442,7 +442,7 @@ impl Free {
             let arc = slice.arc(a);
             let x = slice
                 .height_at(arc, &K::Num::from_rat(t))
-                .map_or_else(|| arc.start().x.clone(), |x| x);
+                .unwrap_or_else(|| arc.start().x.clone());
             (e, crate::kernel::Position::<K>::publish(&x))
         };
         let (mut out, mut open, mut first_high) = (Vec::new(), None, None);
@@ -744,7 +744,7 @@ impl Assembly {
                 if self.vertices[v as usize].side != 0 {
                     continue;
                 }
-                let (a, b) = (class(&go, n % 2 == 0), class(&come, h % 2 == 1));
+                let (a, b) = (class(&go, n.is_multiple_of(2)), class(&come, h % 2 == 1));
                 let x = self.vertices[v as usize].num;
                 let k = &mut self.b.kernel;
                 let holds = match a.cmp(&b) {

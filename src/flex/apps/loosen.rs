@@ -387,12 +387,12 @@ mod tests {
                 && (doubles(a)[1] - y as f64 / 8.0).abs() < 1e-6
         };
         let want = [(1, 1), (31, 1), (31, 7), (7, 7), (7, 23), (1, 23)];
-        let got = inset(&l, &by).unwrap();
+        let got = inset(&l, &by).expect("an inset");
         for (g, (x, y)) in got.iter().zip(want) {
             assert!(near(g, x, y), "{got:?}");
         }
         let back: Vec<Vec2> = l.iter().rev().cloned().collect();
-        let got = inset(&back, &by).unwrap();
+        let got = inset(&back, &by).expect("an inset");
         for (g, (x, y)) in got.iter().rev().zip(want) {
             assert!(near(g, x, y), "{got:?}");
         }
