@@ -113,7 +113,7 @@ fn bad_usage() {
         &["simulate"],
         &["simulate", PINS, "--tolerance=-1"],
         &["simulate", PINS, "--arithmetic", "roman"],
-        &["simulate", PINS, "--method", "sweep"],
+        &["simulate", PINS, "--method", "guess"],
         &["simulate", PINS, "--time-limit", "soon"],
         &["render", PINS],
         &["schema", "nothing"],
