@@ -16,7 +16,7 @@
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
 //! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
-//! * [`motion`]: the dynamical rules in one place, and the simple algorithm.
+//! * [`motion`]: the dynamical rules in one place, and the two algorithms.
 //! * [`report`]: results as JSON with every number exact, summaries, pictures.
 //! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
 //! * [`trade`](mod@trade): speed against accuracy, measured over the arithmetics.

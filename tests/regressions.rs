@@ -1,13 +1,16 @@
 //! Wrong answers that were found by random scenes, each by name, with what is right and why.
 #![allow(clippy::unwrap_used)]
 
-use snapfit::motion::{EventKind, OutcomeKind, Trajectory, simulate};
+#[path = "common/hand.rs"]
+mod hand;
+
+use snapfit::motion::{EventKind, OutcomeKind, Trajectory};
 use snapfit::number::Rat;
 use snapfit::scene::read_scene;
 
 fn run(text: &str) -> Trajectory {
     let file = read_scene("scene.toml", text).unwrap();
-    simulate(file.scene(), &Default::default()).unwrap()
+    hand::by_both_methods(file.scene())
 }
 
 /// At t = 7 the slope of o0 lets the pawl come to rest, and at the same instant the apex of o1

@@ -54,10 +54,17 @@ fn the_sweep_tells_what_the_scan_tells() {
             Ok((naive, sweep)) => {
                 swept += sweep.1;
                 if naive.0 != sweep.0 {
-                    wrong.push(format!("seed {seed} differs\n{}", scene.to_toml()));
+                    let first = naive.0.lines().zip(sweep.0.lines()).find(|(a, b)| a != b);
+                    let toml = scene.to_toml();
+                    eprintln!("seed {seed} differs: {first:?}\n{toml}");
+                    wrong.push(format!("seed {seed} differs\n{toml}"));
                 }
             }
-            Err(_) => wrong.push(format!("seed {seed} panics\n{}", scene.to_toml())),
+            Err(_) => {
+                let toml = scene.to_toml();
+                eprintln!("seed {seed} panics\n{toml}");
+                wrong.push(format!("seed {seed} panics\n{toml}"));
+            }
         }
     }
     eprintln!("{n} scenes, {swept} runs swept");

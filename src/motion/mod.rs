@@ -1,4 +1,4 @@
-//! Motion: the dynamical rules, in one place, and the simple algorithm that applies them.
+//! Motion: the dynamical rules, in one place, and the two algorithms that apply them.
 //!
 //! # The clamp
 //!

@@ -109,7 +109,7 @@ impl std::fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-/// Simulates a scene (DP Def. 2.1) by the simple algorithm, in the arithmetic asked for.
+/// Simulates a scene (DP Def. 2.1) by the algorithm and in the arithmetic asked for.
 ///
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.

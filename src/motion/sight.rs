@@ -39,6 +39,12 @@ pub(super) trait Sight<K: Kernel> {
     fn next_touch(&self, after: &K::Time) -> Option<K::Time>;
     /// The state has changed, at an instant. False if this sight cannot see it from there on.
     fn entered(&self, state: State, at: &K::Time) -> bool;
+    /// Whether a point (None: none within the phase) can be the state's next. False if what was named
+    /// contradicts itself; then nothing that it named is to be used.
+    fn vouches(&self, next: Option<&Point<K>>) -> bool;
+    /// Whether a snap at an instant may land on an arc (None: at rest): an interval that the sight knows of
+    /// must end there.
+    fn lands(&self, on: Option<(ArcId, bool)>, at: &K::Time) -> bool;
 }
 
 /// Every arc there is.
@@ -85,6 +91,12 @@ impl<K: Kernel> Sight<K> for All<'_, K> {
         self.touches.get(i).cloned()
     }
     fn entered(&self, _: State, _: &K::Time) -> bool {
+        true
+    }
+    fn vouches(&self, _: Option<&Point<K>>) -> bool {
+        true
+    }
+    fn lands(&self, _: Option<(ArcId, bool)>, _: &K::Time) -> bool {
         true
     }
 }

@@ -17,7 +17,7 @@ use super::sight::{Arcs, Sight};
 use crate::contact::Chart;
 use crate::kernel::{Instant, Kernel, Position};
 use crate::number::{Rat, Scalar};
-use crate::slice::{ArcId, Free, Owner, Point, Shape, Slice};
+use crate::slice::{ArcId, Configuration, Free, Owner, Point, Shape, Slice, Whereabouts};
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -265,6 +265,38 @@ impl<K: Kernel> Sight<K> for Sweep<'_, K> {
                 })
             }
         }
+    }
+
+    fn vouches(&self, next: Option<&Point<K>>) -> bool {
+        // On an edge: its later end, rest on the way there, or the end of the phase.
+        let Some(e) = self.eye.borrow().edge else {
+            return true;
+        };
+        let last = self.free.edges()[e as usize].last();
+        let Some(z) = next else {
+            return self.free.cmp_time(last, &self.end.publish()).is_ge();
+        };
+        let order = self.free.cmp_time(last, &z.t.publish());
+        order.is_eq() || order.is_gt() && z.chart == Chart::Rest && z.x.sign() == 0
+    }
+
+    fn lands(&self, on: Option<(ArcId, bool)>, at: &K::Time) -> bool {
+        if let Some((arc, lower)) = on {
+            return self.find(&Spot::Open, arc, lower, at).is_some();
+        }
+        let soon = at.shift(&K::Num::one());
+        let soon = if self.end < soon {
+            self.end.clone()
+        } else {
+            soon
+        };
+        let next = self.next_touch(at).filter(|n| *n < soon).unwrap_or(soon);
+        if next <= *at {
+            return true;
+        }
+        let (chart, x) = (Chart::Rest, Rat::zero());
+        let t = K::Time::between(at, &next).to_rat();
+        self.free.locate(&Configuration { chart, x, t }) != Whereabouts::Outside
     }
 }
 

@@ -201,7 +201,8 @@ fn starts(keys: impl Iterator<Item = u32>, n: usize) -> Vec<u32> {
 
 impl Free {
     /// F of the slice's barriers that holds a configuration strictly within the phase and on no
-    /// arc. None where the slice cannot be unrolled or the configuration lies on an arc.
+    /// arc. None where the slice cannot be unrolled, the configuration lies on an arc, or the pieces do
+    /// not fit together.
     ///
     /// Cost: O(n log n) for an index of the arcs, then in proportion to what the walk round F meets.
     pub fn new<K: Kernel>(slice: &Slice<K>, at: &Configuration) -> Option<Free> {
@@ -217,7 +218,7 @@ impl Free {
             &strip.glue,
         )
         .ok()?;
-        Some(Assembly::new(slice, strip, b).finish(slice))
+        Assembly::new(slice, strip, b)?.finish(slice)
     }
 
     fn kernel(&self) -> MutexGuard<'_, FaceKernel> {
@@ -495,7 +496,7 @@ struct Assembly {
 }
 
 impl Assembly {
-    fn new<K: Kernel>(slice: &Slice<K>, strip: Strip, b: Boundary) -> Assembly {
+    fn new<K: Kernel>(slice: &Slice<K>, strip: Strip, b: Boundary) -> Option<Assembly> {
         let mut a = Assembly {
             renamed: Vec::with_capacity(b.vertices.len()),
             vertices: Vec::with_capacity(b.vertices.len()),
@@ -505,13 +506,14 @@ impl Assembly {
             strip,
             b,
         };
-        a.take_vertices();
+        a.take_vertices()?;
         a.take_edges(slice);
-        a
+        Some(a)
     }
 
-    /// The strip's vertices, those on the cut united with their partners.
-    fn take_vertices(&mut self) {
+    /// The strip's vertices, those on the cut united with their partners. None if one lies on the cut where
+    /// nothing can end.
+    fn take_vertices(&mut self) -> Option<()> {
         let k = &mut self.b.kernel;
         let cuts = [Rat::from(-1), Rat::from(3)];
         let cut_ids = [k.rational(&cuts[0]), k.rational(&cuts[1])];
@@ -524,8 +526,7 @@ impl Assembly {
                 if k.cmp(num, id).is_eq() {
                     let (p, q) = k.polys(curve);
                     let t = p.eval(x) / q.eval(x);
-                    stop = self.strip.stops.binary_search(&t).ok();
-                    debug_assert!(stop.is_some(), "arcs end on the cut at its stops only");
+                    stop = Some(self.strip.stops.binary_search(&t).ok()?);
                 }
             }
             let next = self.vertices.len() as u32;
@@ -549,7 +550,16 @@ impl Assembly {
                     cut: stop.is_some(),
                     rest_open: false,
                 });
-                self.links.push(Vec::new());
+                let mut links = Vec::new();
+                if let Some(s) = stop {
+                    // Beyond the cut too, where F may not lie: what ends on it there touches the state
+                    // on this side of it.
+                    let (t, ends) = (&self.strip.stops[s], &self.strip.at_cut);
+                    let from = ends.partition_point(|e| e.0 < *t);
+                    let here = ends[from..].iter().take_while(|e| e.0 == *t);
+                    links.extend(here.map(|e| e.1));
+                }
+                self.links.push(links);
             }
             let links =
                 &self.b.links[self.b.link_starts[v] as usize..self.b.link_starts[v + 1] as usize];
@@ -564,6 +574,7 @@ impl Assembly {
             l.sort_unstable();
             l.dedup();
         }
+        Some(())
     }
 
     fn take_edges<K: Kernel>(&mut self, slice: &Slice<K>) {
@@ -601,8 +612,8 @@ impl Assembly {
     }
 
     /// The cycles of the cylinder: where the strip's boundary turns along a stretch of the cut, the walk
-    /// goes on beyond it.
-    fn cycles(&self) -> (Vec<u32>, Vec<u32>) {
+    /// goes on beyond it. None if the face does not lie beyond it, as it must.
+    fn cycles(&self) -> Option<(Vec<u32>, Vec<u32>)> {
         let b = &self.b;
         let mut next = vec![NONE; 2 * b.edges.len()];
         for w in b.cycles.windows(2) {
@@ -638,20 +649,16 @@ impl Assembly {
                 order.push(2 * self.kept[h as usize / 2] + h % 2);
                 h = next[h as usize];
                 while self.kept[h as usize / 2] == NONE {
-                    let Some(t) = twin(h) else {
-                        debug_assert!(false, "the cut was flooded");
-                        break;
-                    };
-                    h = next[t as usize];
+                    h = next[twin(h)? as usize];
                 }
             }
             cycles.push(order.len() as u32);
         }
-        (order, cycles)
+        Some((order, cycles))
     }
 
-    fn finish<K: Kernel>(mut self, slice: &Slice<K>) -> Free {
-        let (order, cycles) = self.cycles();
+    fn finish<K: Kernel>(mut self, slice: &Slice<K>) -> Option<Free> {
+        let (order, cycles) = self.cycles()?;
         self.mark_rest(&order, &cycles);
         // Vertices that only the cut had are no longer any.
         let mut number = vec![NONE; self.vertices.len()];
@@ -722,7 +729,7 @@ impl Assembly {
         };
         free.sort_arcs(slice);
         free.find_touches(slice);
-        free
+        Some(free)
     }
 
     /// For vertices at rest, whether F holds what comes right after them at rest: whether one of the sectors

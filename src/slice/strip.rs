@@ -41,6 +41,8 @@ pub(super) struct Strip {
     pub(super) owners: Vec<Owner>,
     /// Where anything can end on the cut, ascending.
     pub(super) stops: Vec<Rat>,
+    /// What ends there, by time: on either side of the cut, though F may border one side alone.
+    pub(super) at_cut: Vec<(Rat, ArcId)>,
 }
 
 /// c₀ + c₁x + c₂x² with x = s − 2·turns.
@@ -106,6 +108,7 @@ impl Strip {
             glue: Vec::new(),
             owners: Vec::with_capacity(slice.arcs().len() + 2),
             stops: vec![zero.clone(), end.clone()],
+            at_cut: Vec::new(),
         };
         let mut levels = Vec::new();
         for (id, arc) in slice.arcs().iter().enumerate() {
@@ -139,6 +142,7 @@ impl Strip {
         s.stops.retain(|t| *t >= zero && *t <= end);
         s.stops.sort();
         s.stops.dedup();
+        s.at_cut.sort();
         for w in s.stops.windows(2) {
             let [low, high] = [constant(&w[0]), constant(&w[1])];
             s.glue.push((s.uprights.len(), s.uprights.len() + 1));
@@ -168,7 +172,9 @@ impl Strip {
             let cut = if back { Rat::one() } else { Rat::from(-1) };
             if x.cmp_rat(&cut).is_eq() {
                 *x = Algebraic::from(cut);
-                self.stops.push(t.decided()?.to_rat());
+                let t = t.decided()?.to_rat();
+                self.at_cut.push((t.clone(), id));
+                self.stops.push(t);
             }
         }
         self.graphs.push(SourceArc {
@@ -200,6 +206,7 @@ impl Strip {
             let u = RootOf { c: three, k: 0 };
             self.uprights.push(Upright { u, ..up.clone() });
             owners.push(Owner::Arc(id));
+            self.at_cut.extend([(lo.clone(), id), (hi.clone(), id)]);
             self.stops.extend([lo, hi]);
         }
         self.uprights.push(up);

@@ -29,9 +29,10 @@
 use snapfit::contact::{Contact, ContactKind};
 use snapfit::geometry::Vec2;
 use snapfit::motion::{
-    Angle, Event, EventKind, Options, OutcomeKind, RootContact, Trajectory, simulate,
+    Angle, Event, EventKind, Method, Options, OutcomeKind, RootContact, Trajectory, simulate,
 };
 use snapfit::number::{Algebraic, Poly, Rat};
+use snapfit::report::json::{Provenance, ResultDocument};
 use snapfit::scene::{Motion, Obstacle, Pawl, Root, Scene, read_scene};
 use snapfit::slice::Time;
 
@@ -239,6 +240,34 @@ pub fn tell(text: &str) -> Told {
     tell_scene(scene(text))
 }
 
+/// The sweep's answer, which must be the simple algorithm's, as JSON to the byte.
+pub fn by_both_methods(scene: &Scene) -> Trajectory {
+    let run = |method| {
+        let options = Options {
+            method,
+            ..Options::default()
+        };
+        simulate(scene, &options).unwrap()
+    };
+    let text = |t: &Trajectory| {
+        let how = Provenance {
+            arithmetic: "filtered",
+            method: "either",
+        };
+        let mut doc = serde_json::to_value(ResultDocument::new(scene, t, how)).unwrap();
+        doc.as_object_mut().unwrap().remove("ledger");
+        serde_json::to_string_pretty(&doc).unwrap()
+    };
+    let (naive, sweep) = (run(Method::Naive), run(Method::Sweep));
+    assert_eq!(
+        text(&naive),
+        text(&sweep),
+        "the methods differ on\n{}",
+        scene.to_toml()
+    );
+    sweep
+}
+
 /// [`tell`] for a scene that is there already.
 pub fn tell_scene(scene: Scene) -> Told {
     let toml = scene.to_toml();
@@ -253,7 +282,7 @@ pub fn tell_scene(scene: Scene) -> Told {
                 .join("; ")
         ),
     }
-    let trajectory = simulate(&scene, &Options::default()).unwrap();
+    let trajectory = by_both_methods(&scene);
     let told = Told { scene, trajectory };
     told.audit();
     told
