@@ -571,7 +571,6 @@ fn crowd(rng: &mut Rng, kind: u64, size: i64) -> Vec<SourceArc> {
 }
 
 #[test]
-#[ignore = "kind 3 (crossings 2^-200 apart, merged) is known to fail: see the order of numbers"]
 fn crowded_faces_are_those_of_the_whole_arrangement() {
     for round in 0..count(3_000).max(24) as u64 {
         let mut rng = Rng(round.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 7);
@@ -602,7 +601,6 @@ fn crowded_faces_are_those_of_the_whole_arrangement() {
 /// Hundreds of arcs through one point, and beside it: too many for the whole arrangement, so the two
 /// ways are held against each other.
 #[test]
-#[ignore = "kind 3 (crossings 2^-200 apart, merged) is known to fail: see the order of numbers"]
 fn large_crowds_walk_and_merge_alike() {
     for kind in 0..6 {
         let mut rng = Rng(kind + 99);
