@@ -410,15 +410,17 @@ impl<'a> Run<'a> {
             if stopped {
                 break;
             }
-            let before = std::mem::replace(&mut last_gain, double(&gain));
+            last_gain = double(&gain);
             promise = last_gain / 10.0;
-            if gain.abs() < rules.gain {
+            // Where other corners face each other a step later, what one step gains the next may
+            // take back, over and over: the two together gain nothing.
+            let steps = &out.steps;
+            let swings = steps.len() > 1
+                && gain.sign() < 0
+                && (&gain + &steps[steps.len() - 2].gain).abs() < rules.gain;
+            if gain.abs() < rules.gain || swings {
                 out.ending = Ending::Converged;
                 break;
-            }
-            if last_gain.abs() > before.abs() / 2.0 && last_gain.signum() != before.signum() {
-                // Back and forth: what is gained and lost is rounding.
-                self.fine /= 16.0;
             }
         }
         let placed = self.scaffold.place(&poses);
