@@ -264,3 +264,11 @@ fn verdicts_mind_no_more_than_they_must() {
     eprintln!("{kinematic} kinematic, {friction} by friction");
     assert!(kinematic + friction > 0);
 }
+
+/// Writes a random hook as a scene, to look at: `TEST_SEED=7000007 cargo test … -- --ignored hook_as`.
+#[test]
+#[ignore = "a tool"]
+fn hook_as_a_scene() {
+    let seed = std::env::var("TEST_SEED").unwrap().parse().unwrap();
+    println!("{}", hook(seed).to_toml());
+}
