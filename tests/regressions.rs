@@ -113,3 +113,39 @@ duration = "3/10"
     assert_eq!(t.outcome.kind, OutcomeKind::Completed);
     assert_eq!(t.pawls[0].events[0].kind, EventKind::SnapFree);
 }
+
+/// At the phase's last instant a curve comes to θ = −π/2, where the unrolled cylinder is cut, from
+/// the side on which F does not lie. The sweep once did not see it.
+#[test]
+fn met_on_the_cut_from_beyond_it() {
+    let t = run(r#"
+[scene]
+name = "random-7001665"
+[[obstacle]]
+name = "o0"
+vertices = [["1", "2"], ["0", "2"], ["-1", "1"], ["0", "0"]]
+[root]
+vertices = [["-1", "9"], ["3", "9"], ["0", "12"]]
+[[pawl]]
+name = "p0"
+hinge = ["2", "3"]
+vertices = [["0", "-1"], ["3", "2"], ["3", "3"], ["2", "3"], ["2", "2"]]
+start = "-3/2"
+[[pawl]]
+name = "p1"
+hinge = ["-2", "3"]
+vertices = [["-3", "2"], ["-1", "3"], ["-1", "5"], ["-2", "5"], ["-2", "3"]]
+[[motion]]
+velocity = ["0", "-1"]
+until = "root-collision"
+duration = "2"
+[[motion]]
+reverse = true
+"#);
+    let met = |p: &snapfit::motion::PawlTrace| {
+        p.events
+            .iter()
+            .any(|e| e.kind == EventKind::SlidingCollision && e.phase == 1)
+    };
+    assert!(t.pawls.iter().any(met));
+}

@@ -25,7 +25,7 @@ fn document(text: &str) -> (snapfit::scene::Scene, ResultDocument) {
     let trajectory = simulate(&scene, &Options::default()).unwrap();
     let how = Provenance {
         arithmetic: "exact",
-        method: "naive",
+        method: "sweep",
     };
     let document = ResultDocument::new(&scene, &trajectory, how);
     (scene, document)
@@ -120,7 +120,7 @@ fn the_document_has_the_contracts_shape() {
         let doc = value(text);
         assert_eq!(doc["schema"], "snapfit.result/1");
         assert_eq!(doc["arithmetic"], "exact");
-        assert_eq!(doc["method"], "naive");
+        assert_eq!(doc["method"], "sweep");
         for key in ["kind", "time", "phase", "pawl", "position"] {
             assert!(doc["outcome"].get(key).is_some(), "{name}: outcome.{key}");
         }

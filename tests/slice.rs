@@ -41,7 +41,6 @@ fn told(scene: &Scene, method: Method) -> (String, u64) {
 
 /// DP §9: both algorithms, one answer, to the byte.
 #[test]
-#[ignore = "to be run at length before the sweep becomes the default"]
 fn the_sweep_tells_what_the_scan_tells() {
     let n = count(100_000) as u64;
     let mut swept = 0;

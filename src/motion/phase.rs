@@ -67,11 +67,10 @@ pub struct Setting<'a> {
 /// Which algorithm runs. Both are to give the same answers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Method {
-    /// The sweep over the free component (DP §9.2). Not the default until 10,000 random scenes agree
-    /// (`tests/slice.rs`).
+    /// The sweep over the free component (DP §9.2).
+    #[default]
     Sweep,
     /// The simple algorithm: every step looks at every arc.
-    #[default]
     Naive,
 }
 
