@@ -170,12 +170,7 @@ fn most_promising(open: &[Node]) -> Option<usize> {
 }
 
 /// Adds the four children of a node on one disjunction; how many programs were solved.
-fn expand(
-    taken: &[Option<u8>],
-    k: usize,
-    solved: &Solver<'_>,
-    open: &mut Vec<Node>,
-) -> usize {
+fn expand(taken: &[Option<u8>], k: usize, solved: &Solver<'_>, open: &mut Vec<Node>) -> usize {
     for choice in 0..4 {
         let mut child = taken.to_vec();
         child[k] = Some(choice);
