@@ -11,7 +11,7 @@ use common::count;
 use snapfit::contact::Chart;
 use snapfit::geometry::Vec2;
 use snapfit::kernel::{FloatOptions, Identify};
-use snapfit::motion::{Arithmetic, Options, OutcomeKind, Trajectory, simulate};
+use snapfit::motion::{Arithmetic, Method, Options, OutcomeKind, Trajectory, simulate};
 use snapfit::number::Rat;
 use snapfit::scene::{Motion, Scene, read_scene};
 use snapfit::trade::Setting;
@@ -283,16 +283,21 @@ fn a_result_in_doubles_carries_no_exact_number() {
     }
 }
 
-#[test]
-fn the_first_stage_settles_generic_scenes() {
-    // Coordinates of seven random digits: nothing coincides but by name.
+/// The share of the questions, those settled by names left out, that double enclosures settle on
+/// scenes with coordinates of seven random digits: nothing coincides there but by name.
+fn first_stage(method: Method) -> f64 {
     let n = count(10_000) as u64;
     let (mut first, mut asked, mut scenes) = (0, 0, 0);
     for seed in 0..n {
         let mut recipe = Recipe::draw(9_000_000 + seed);
         (recipe.grid, recipe.root) = (9_999_991, false);
         let scene = random_scene(&recipe);
-        let t = run(&scene, Arithmetic::Filtered);
+        let options = Options {
+            arithmetic: Arithmetic::Filtered,
+            method,
+            ..Options::default()
+        };
+        let t = simulate(&scene, &options).unwrap();
         if t.outcome.kind == OutcomeKind::Undecided || t.ledger.degenerate_events > 0 {
             continue;
         }
@@ -303,10 +308,19 @@ fn the_first_stage_settles_generic_scenes() {
     }
     let share = first as f64 / asked as f64;
     eprintln!(
-        "{scenes} generic scenes: {first} of {asked} ({:.4} %)",
+        "{scenes} generic scenes, {}: {first} of {asked} ({:.4} %)",
+        method.name(),
         100.0 * share
     );
-    assert!(share >= 0.999, "{share}");
+    share
+}
+
+#[test]
+fn the_first_stage_settles_generic_scenes() {
+    assert!(first_stage(Method::Naive) >= 0.999);
+    // F's vertices and the slice's named points are the same points under two names, which only
+    // algebra can tell: below what is wanted, and held here so that it gets no worse.
+    assert!(first_stage(Method::Sweep) >= 0.993);
 }
 
 #[test]

@@ -628,7 +628,12 @@ fn index(k: &Kernel, items: &mut [Item]) -> Tree {
             entries.push((Hull::boxed(*b), i as u32));
             continue;
         };
-        let n = 1 + ((length(b) * per) as usize).min(31);
+        // A range past the doubles cannot be cut into equal parts.
+        let n = if (b[1] - b[0]).is_finite() {
+            1 + ((length(b) * per) as usize).min(31)
+        } else {
+            1
+        };
         let mut from = b[0];
         for p in 1..=n {
             let to = if p == n {

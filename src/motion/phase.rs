@@ -177,7 +177,7 @@ impl<K: Kernel> Runner<'_, K> {
             &Place::new(z.clone(), start.half_turn),
         );
         let next = self.begin(start, &z, &inc, touching);
-        if self.set.method == Method::Sweep && K::CERTIFIED {
+        if self.set.method == Method::Sweep && K::ENCLOSES {
             let seed = self.seed(&next, start, &z, &inc);
             self.look_from(seed);
         }

@@ -55,11 +55,12 @@ impl Arithmetic {
 }
 
 impl Method {
-    /// What runs under an arithmetic: doubles cannot vouch for F, so they scan.
+    /// What runs under an arithmetic. F is traced with certified doubles first: so the reference, which
+    /// knows none, scans, and so do doubles alone, which cannot vouch for F.
     pub fn under(self, arithmetic: &Arithmetic) -> Method {
         match arithmetic {
-            Arithmetic::F64(_) => Method::Naive,
-            _ => self,
+            Arithmetic::Filtered => self,
+            Arithmetic::Exact | Arithmetic::F64(_) => Method::Naive,
         }
     }
 }

@@ -313,14 +313,22 @@ impl Free {
     /// Exact order of a vertex's time and an instant.
     pub fn cmp_time(&self, v: u32, t: &Time) -> Ordering {
         let v = &self.vertices[v as usize];
+        self.apart(v, t)
+            .unwrap_or_else(|| time_of(&mut self.kernel(), v.num, v.curve).cmp(t))
+    }
+    /// The order of a vertex's time and an instant where enclosures tell it.
+    pub(crate) fn clearly(&self, v: u32, t: &Time) -> Option<Ordering> {
+        self.apart(&self.vertices[v as usize], t)
+    }
+    fn apart(&self, v: &FreeVertex, t: &Time) -> Option<Ordering> {
         let i = t.interval();
         if v.t[1] < i.lo {
-            return Ordering::Less;
+            Some(Ordering::Less)
+        } else if i.hi < v.t[0] {
+            Some(Ordering::Greater)
+        } else {
+            None
         }
-        if i.hi < v.t[0] {
-            return Ordering::Greater;
-        }
-        time_of(&mut self.kernel(), v.num, v.curve).cmp(t)
     }
     /// The edges whose boxes meet a box of the strip.
     pub fn edges_near(&self, x: [f64; 2], t: [f64; 2], mut found: impl FnMut(u32)) {

@@ -257,7 +257,7 @@ pub(crate) enum Backend {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
-    /// A sweep over the free component; with f64 every step looks at every arc
+    /// A sweep over the free component; with exact or f64 every step looks at every arc
     Sweep,
     /// Every step looks at every arc
     Naive,
