@@ -254,10 +254,7 @@ fn clips_are_what_their_makers_say() {
 fn the_deciding_motion_can_be_simulated() {
     for (name, class) in FAMILIES {
         let s = scene(name);
-        if s.motions
-            .iter()
-            .any(|m| *m == snapfit::scene::Motion::Reverse)
-        {
+        if s.motions.contains(&snapfit::scene::Motion::Reverse) {
             continue;
         }
         let (doc, way) = classify_with_way(&s, &ASK).unwrap();

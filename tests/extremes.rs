@@ -271,6 +271,7 @@ fn what_is_no_number_stays_outside() {
 
 /// The 24 cases of Orellana and De Michele (ACM TOMS Algorithm 1010, table 1): real roots, and
 /// conjugate pairs as (real part, imaginary part).
+#[allow(clippy::type_complexity)]
 const QUARTICS: [(&[&str], &[(&str, &str)]); 22] = [
     (&["1e9", "1e6", "1e3", "1"], &[]),
     (&["2.003", "2.002", "2.001", "2"], &[]),
@@ -405,6 +406,12 @@ fn sturm(p: &Poly) -> usize {
         signs.windows(2).filter(|w| w[0] != w[1]).count()
     };
     let high = |c: &Vec<Rat>| c.last().unwrap().sign();
-    let low = |c: &Vec<Rat>| if c.len() % 2 == 0 { -high(c) } else { high(c) };
+    let low = |c: &Vec<Rat>| {
+        if c.len().is_multiple_of(2) {
+            -high(c)
+        } else {
+            high(c)
+        }
+    };
     changes(&low) - changes(&high)
 }
