@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! scene file ─ scene ─▶ Scene ─ contact ─▶ patches ─ slice ─▶ arcs on the (t, θ) cylinder
-//!   ─ motion ─▶ Trajectory ─ report ─▶ JSON, summary, SVG
+//!   ─ face ─▶ the free component F ─ motion ─▶ Trajectory ─ report ─▶ JSON, summary, SVG
 //! ```
 //!
 //! * [`number`]: integers and rationals behind one seam, certified intervals, real algebraic
@@ -15,14 +15,16 @@
 //! * [`kernel`]: which arithmetic answers; everything from `contact` to `motion` is written over it.
 //! * [`scene`]: what the user describes, read with places, validated.
 //! * [`contact`]: C-functions and their patches, types A and B.
-//! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends.
+//! * [`face`](mod@face): the single face of an arrangement of arcs.
+//! * [`slice`](mod@slice): the cylinder of one phase, cut by monotone arcs with named ends, and the
+//!   free component on it.
 //! * [`motion`]: the dynamical rules in one place, and the two algorithms.
 //! * [`report`]: results as JSON with every number exact, summaries, pictures.
 //! * [`analysis`]: verdicts and forces: does it lock, why, and how firmly.
 //! * [`trade`](mod@trade): speed against accuracy, measured over the arithmetics.
-//! * [`face`](mod@face): the single face of an arrangement of arcs.
 //! * [`lp`], [`certificate`]: exact linear programming, and the checker of its certificates, which
 //!   shares only the reader and the numbers with it.
+//! * [`flex`](mod@flex): PuzzleFlex, how far loosely joined bodies move, on top of `lp`.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

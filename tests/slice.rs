@@ -268,7 +268,6 @@ fn cells(
 /// F against a flood of the whole arrangement: slabs between all critical times, their free cells by
 /// the polygon test, joined where they overlap from one slab to the next. Doubtful overlaps let the slice pass.
 #[test]
-#[ignore = "to be run at length before the sweep becomes the default"]
 fn the_flood_reaches_what_f_holds() {
     let (mut checked, mut doubtful, mut members) = (0, 0, 0);
     each_free(

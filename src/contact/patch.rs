@@ -2,8 +2,8 @@
 //! which it is a real contact.
 
 use super::{Contact, ContactKind, ObstacleShape, PawlShape, Ring, Trig, window};
-use crate::face::index::Hull;
 use crate::geometry::Vec2;
+use crate::geometry::index::Hull;
 use crate::number::{Enclosed, Interval, Rat, Scalar, filter};
 
 /// A straight phase as one hinge sees it: p(t) = p₀ + v·t, 0 ≤ t ≤ duration.

@@ -1,7 +1,7 @@
 //! Polygons prepared for contact: edges with outward normals, vertices with their convexity.
 
-use crate::face::index::{Hull, Tree};
 use crate::geometry::Vec2;
+use crate::geometry::index::{Hull, Tree};
 use crate::number::{Enclosed, Rat, Scalar};
 use crate::scene::{Obstacle, Pawl};
 use std::sync::OnceLock;

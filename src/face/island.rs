@@ -10,8 +10,8 @@
 //! would do without rays, made the merge take half as long again to twice as long, because every vertex had to be
 //! placed among the edges that are active.
 
-use super::index::{EMPTY, hull, meet};
 use super::trace::Tracer;
+use crate::geometry::index::{EMPTY, hull, meet};
 
 impl Tracer<'_> {
     /// Traces every island of the face whose outline is known.

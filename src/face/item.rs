@@ -1,7 +1,7 @@
 //! What a walk walks on: arcs of the input, or edges of faces already found.
 
-use super::index::Bounds;
 use super::kernel::{CurveId, NumId};
+use crate::geometry::index::Bounds;
 
 pub(crate) const NONE: u32 = u32::MAX;
 

@@ -8,7 +8,7 @@
 
 use super::approx::{Approx, horner};
 use super::hash::FastMap;
-use super::index::Hull;
+use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
 
 /// A curve t = P(u)/Q(u); equal ids are equal functions.

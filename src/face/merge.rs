@@ -13,9 +13,9 @@
 //! of one half through p bound that half's face there (p lies in its closure), so p is a vertex of R
 //! or of B, or one edge of each passes through it and the walk finds the crossing.
 
-use super::index::{EMPTY, Hull, arrange};
 use super::kernel::Kernel;
 use super::trace::{Carrier, Comp, Dir, Item, NONE, OnArc, Point, Tracer, hull_of};
+use crate::geometry::index::{EMPTY, Hull, arrange};
 
 /// The boundary of one face: its edges by their vertices, cut at every vertex of the arrangement.
 #[derive(Default)]

@@ -18,7 +18,6 @@ mod approx;
 mod boundary;
 mod compare;
 mod hash;
-pub(crate) mod index;
 mod island;
 mod isolate;
 mod item;
@@ -32,7 +31,6 @@ mod stops;
 mod trace;
 
 pub(crate) use boundary::{Boundary, Glue, boundary};
-pub(crate) use index::{Hull, Tree};
 pub use kernel::Stats;
 pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};

@@ -1,10 +1,10 @@
 //! The face of bare arcs as a question with an answer, for the library and for the command line.
 
-use super::index::EMPTY;
 use super::kernel::{Defect, Kernel, Stats};
 use super::merge::{Face, divide, walk, walk_within};
 use super::read::{ArcFile, ReadError, SourceArc, Upright};
 use super::trace::{Carrier, Item, NONE, OnArc, Point};
+use crate::geometry::index::EMPTY;
 use crate::number::Rat;
 use serde::Serialize;
 use std::fmt;

@@ -7,10 +7,10 @@
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
-use super::index::Hull;
 use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
 use super::trace::Tracer;
+use crate::geometry::index::Hull;
 use std::cmp::Ordering;
 
 /// What another item does on this one.

@@ -11,12 +11,12 @@
 
 use super::approx::Approx;
 use super::hash::FastMap;
-use super::index::{Bounds, Hull, Tree};
 use super::item::Place;
 pub(crate) use super::item::{Carrier, Comp, Item, NONE, Point};
 use super::kernel::{CurveId, Kernel, NumId};
 use super::meet::Cross;
 use super::stops::{Hit, Link, Vertex, Window};
+use crate::geometry::index::{Bounds, Hull, Tree};
 use std::cmp::Ordering;
 
 /// The direction in which a germ leaves its vertex.

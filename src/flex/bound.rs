@@ -22,6 +22,10 @@
 //! its first body, holds only *relative* angles, which are small, so its linear part is off by
 //! little. The objective is summed along a chain of joints from a fixed body. What the
 //! linearisation of these may lose is added to the optimum, which is exact and certified.
+//!
+//! *What is not proven.* The slacks and losses are computed in doubles and rounded outwards by a
+//! margin (`up`) that is generous for coordinates of ordinary size, not by an error analysis. Until
+//! they are intervals the bound is as sound as that margin.
 
 use super::model::{Form, Row, Scaffold};
 use super::pairs::{Plane, Point, select};
@@ -33,7 +37,7 @@ use crate::lp::{self, Model, Range, Status};
 use crate::number::Rat;
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
-/// A proven outer bound.
+/// An outer bound; the module says what of it is proven.
 #[derive(Clone, Debug)]
 pub struct OuterBound {
     /// No collision-free motion gains more.

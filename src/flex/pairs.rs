@@ -389,6 +389,10 @@ fn nearest(placed: &[Placed], count: usize) -> Vec<(usize, usize)> {
     };
     let exact: Vec<Vec2> = (0..n).map(place).collect();
     let near: Vec<[f64; 2]> = exact.iter().map(super::shape::doubles).collect();
+    // How far a squared distance in doubles may be off: coordinates by their rounding, the rest by its own.
+    let size = near.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let blur = size * 2f64.powi(-50) + f64::MIN_POSITIVE;
+    let error = |d: f64| 8.0 * blur * (d.sqrt() + 2.0 * blur) + d * 2f64.powi(-48);
     let mut out = Vec::with_capacity(n * count);
     for i in 0..n {
         let mut others: Vec<(f64, usize)> = (0..n)
@@ -399,8 +403,9 @@ fn nearest(placed: &[Placed], count: usize) -> Vec<(usize, usize)> {
             })
             .collect();
         let by = |x: &(f64, usize), y: &(f64, usize)| {
-            let close = (x.0 - y.0).abs() <= 1e-9 * (1.0 + x.0.max(y.0));
-            if close {
+            // Also where a double overflowed and the difference is no number.
+            let clear = (x.0 - y.0).abs() > error(x.0) + error(y.0);
+            if !clear {
                 let square = |j: usize| (&exact[j] - &exact[i]).norm2();
                 square(x.1).cmp(&square(y.1)).then(x.1.cmp(&y.1))
             } else {
@@ -411,7 +416,8 @@ fn nearest(placed: &[Placed], count: usize) -> Vec<(usize, usize)> {
             // Exact comparisons only among those that may be chosen.
             others.select_nth_unstable_by(count - 1, |x, y| x.0.total_cmp(&y.0));
             let edge = others[count - 1].0;
-            others.retain(|o| o.0 <= edge + 2e-9 * (1.0 + edge));
+            let far = |d: f64| d - error(d) > edge + error(edge);
+            others.retain(|o| !far(o.0));
         }
         others.sort_by(by);
         out.extend(

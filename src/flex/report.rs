@@ -40,7 +40,7 @@ pub struct FlexDocument {
     pub bits: Vec<u64>,
     /// What proves the steps' optima.
     pub certificate: Value,
-    /// Where asked for: a proven outer bound of the flex.
+    /// Where asked for: an outer bound of the flex.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bound: Option<BoundDocument>,
 }

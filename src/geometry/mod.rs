@@ -14,9 +14,11 @@
 //! | `polygon` | what is a region, and is a point in it? |
 //! | `defects` | what keeps a polygon from being one? |
 //! | `overlap` | do two regions' interiors share a point? |
+//! | `index` | which pieces may meet this one? |
 
 mod box2;
 mod defects;
+pub(crate) mod index;
 mod overlap;
 mod polygon;
 mod predicates;

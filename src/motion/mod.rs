@@ -19,8 +19,9 @@
 //! # Modules
 //!
 //! [`friction`] says where a contact sticks (DP §6, §7), [`phase`] runs one pawl through one
-//! phase, [`root`] finds the root's collision, [`plan`] strings phases together, [`trajectory`]
-//! holds what comes out.
+//! phase by the rules in `local`, asking a `sight` which arcs may matter: all of them (the simple
+//! algorithm) or those on F's boundary (the `sweep`). [`ledger`] counts, [`root`] finds the root's
+//! collision, [`plan`] strings phases together, [`trajectory`] holds what comes out.
 
 pub mod friction;
 pub mod ledger;

@@ -14,7 +14,8 @@
 use super::strip::{Owner, Strip};
 use super::{ArcId, Shape, Slice, Time};
 use crate::contact::Chart;
-use crate::face::{Boundary, FaceKernel, Hull, NumId, Tree, boundary};
+use crate::face::{Boundary, FaceKernel, NumId, boundary};
+use crate::geometry::index::{Hull, Tree};
 use crate::kernel::{Instant, Kernel};
 use crate::number::{Algebraic, Int, Poly, Rat, Scalar};
 use std::cmp::Ordering;
@@ -312,16 +313,14 @@ impl Free {
     }
     /// Exact order of a vertex's time and an instant.
     pub fn cmp_time(&self, v: u32, t: &Time) -> Ordering {
-        let v = &self.vertices[v as usize];
-        self.apart(v, t)
-            .unwrap_or_else(|| time_of(&mut self.kernel(), v.num, v.curve).cmp(t))
+        self.clearly(v, t).unwrap_or_else(|| {
+            let v = &self.vertices[v as usize];
+            time_of(&mut self.kernel(), v.num, v.curve).cmp(t)
+        })
     }
     /// The order of a vertex's time and an instant where enclosures tell it.
     pub(crate) fn clearly(&self, v: u32, t: &Time) -> Option<Ordering> {
-        self.apart(&self.vertices[v as usize], t)
-    }
-    fn apart(&self, v: &FreeVertex, t: &Time) -> Option<Ordering> {
-        let i = t.interval();
+        let (v, i) = (&self.vertices[v as usize], t.interval());
         if v.t[1] < i.lo {
             Some(Ordering::Less)
         } else if i.hi < v.t[0] {
