@@ -23,6 +23,9 @@
 //! algorithm) or those on F's boundary (the `sweep`). [`ledger`] counts, [`root`] finds the root's
 //! collision, [`plan`] strings phases together, [`trajectory`] holds what comes out.
 
+mod beside;
+mod close;
+mod enter;
 pub mod friction;
 pub mod ledger;
 mod local;
@@ -30,11 +33,12 @@ pub mod phase;
 pub mod plan;
 pub mod root;
 mod sight;
+mod start;
 mod sweep;
 pub mod trajectory;
 
 pub use ledger::Ledger;
-pub use phase::Method;
+pub use phase::{Method, SWEEP_FROM};
 pub use plan::{Arithmetic, Options, PlanError, Seen, simulate, slices};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
