@@ -10,6 +10,7 @@ use super::local::{
     resolve, rests_on_level, right_sorted, settle, snap,
 };
 use super::sight::{All, Sight};
+use super::solids::Solids;
 use super::sweep::Sweep;
 use super::trajectory::{Angle, Branch, Event, EventKind, OutcomeKind, Segment, Sliding};
 use crate::contact::{Chart, Contact, ContactKind};
@@ -47,7 +48,7 @@ pub struct Setting<'a> {
     /// The pawl's polygon about its hinge, at θ = 0.
     pub shape: &'a Polygon,
     /// The obstacles.
-    pub obstacles: &'a [Polygon],
+    pub obstacles: &'a Solids<'a>,
     /// Angular stops.
     pub limits: Option<&'a (Rat, Rat)>,
     /// Coulomb's μ, where friction is modelled.
