@@ -21,7 +21,7 @@
 //! [`friction`] says where a contact sticks (DP §6, §7), [`phase`] runs one pawl through one
 //! phase by the rules in `local`, asking a `sight` which arcs may matter: all of them (the simple
 //! algorithm) or those on F's boundary (the `sweep`). [`ledger`] counts, [`root`] finds the root's
-//! collision, [`plan`] strings phases together, [`trajectory`] holds what comes out.
+//! collision, [`solids`] holds the obstacles for it, [`plan`] strings phases together, [`trajectory`] holds what comes out.
 
 mod beside;
 mod close;
@@ -33,6 +33,7 @@ pub mod phase;
 pub mod plan;
 pub mod root;
 mod sight;
+pub mod solids;
 mod start;
 mod sweep;
 pub mod trajectory;

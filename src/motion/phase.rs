@@ -7,6 +7,7 @@
 use super::friction::stick_time;
 use super::local::{Incident, Place, State, incident, is_tangency, resolve};
 use super::sight::{All, Sight};
+use super::solids::Solids;
 use super::trajectory::{Angle, Branch, Event, OutcomeKind, Segment};
 use crate::contact::{Chart, Contact, ContactKind};
 use crate::geometry::Polygon;
@@ -43,7 +44,7 @@ pub struct Setting<'a> {
     /// The pawl's polygon about its hinge, at θ = 0.
     pub shape: &'a Polygon,
     /// The obstacles.
-    pub obstacles: &'a [Polygon],
+    pub obstacles: &'a Solids<'a>,
     /// Angular stops.
     pub limits: Option<&'a (Rat, Rat)>,
     /// Coulomb's μ, where friction is modelled.
