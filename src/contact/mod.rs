@@ -21,7 +21,7 @@ mod window;
 
 pub use cone::Cones;
 pub use patch::{Frame, Patch, patches, patches_within};
-pub use shape::{ObstacleShape, PawlShape, Ring};
+pub use shape::{Convexity, Normals, ObstacleShape, PawlShape, Ring};
 pub use trig::{Chart, Trig};
 
 /// A contact between a feature of a pawl and a feature of an obstacle, or with an angular stop.
