@@ -79,8 +79,11 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Brace(args) => flex_apps::run_brace(args),
         Verb::Loosen(args) => flex_apps::run_loosen(args),
         Verb::Separate(args) => flex_apps::run_separate(args),
-        Verb::Lp(args) => Ok(progress::solving(args)),
-        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
+        Verb::Lp(args) => {
+            output::spare_input(&args.model, args.out.as_deref())?;
+            Ok(progress::solving(args))
+        }
+        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args, &output::write)),
         Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
