@@ -63,6 +63,8 @@ pub struct Setting<'a> {
     pub method: Method,
     /// F of another run through the slice: it is not made again if it holds this run's start too.
     pub known: Option<Rc<Free>>,
+    /// The way to F.
+    pub face: crate::face::Method,
 }
 
 /// Which algorithm runs. Both are to give the same answers.
@@ -332,7 +334,7 @@ impl<K: Kernel> Runner<'_, K> {
                 .find(|f| f.locate(&at) == Whereabouts::Inside)
             {
                 Some(f) => Some(f.clone()),
-                None => Free::new(self.slice, &at).map(Rc::new),
+                None => Free::new(self.slice, &at, self.set.face).map(Rc::new),
             }
         });
         match free {

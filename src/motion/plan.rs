@@ -30,6 +30,8 @@ pub struct Options<'a> {
     pub arithmetic: Arithmetic,
     /// Which algorithm runs.
     pub method: Method,
+    /// The way to F, where the sweep runs.
+    pub face: crate::face::Method,
 }
 
 /// Which numbers decide.
@@ -157,6 +159,7 @@ pub fn slices(
         progress: options.progress,
         arithmetic: Arithmetic::Filtered,
         method: Method::Sweep,
+        face: options.face,
     };
     simulate_with::<Filtered>(scene, &options, see)
 }
@@ -245,6 +248,7 @@ fn simulate_with<K: Kernel>(
                 stop: &stop,
                 method: options.method,
                 known: None,
+                face: options.face,
             };
             let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));

@@ -14,7 +14,7 @@
 use super::strip::{Owner, Strip};
 use super::{ArcId, Shape, Slice, Time};
 use crate::contact::Chart;
-use crate::face::{Boundary, FaceKernel, NumId, boundary};
+use crate::face::{Boundary, FaceKernel, Found, Method as FaceMethod, NumId, boundary};
 use crate::geometry::index::{Hull, Tree};
 use crate::kernel::{Instant, Kernel};
 use crate::number::{Algebraic, Int, Poly, Rat, Scalar};
@@ -136,6 +136,7 @@ pub struct Interval {
 pub struct Free {
     kernel: Mutex<FaceKernel>,
     duration: Rat,
+    found: Found,
     vertices: Vec<FreeVertex>,
     links: Vec<ArcId>,
     link_starts: Vec<u32>,
@@ -200,30 +201,43 @@ fn starts(keys: impl Iterator<Item = u32>, n: usize) -> Vec<u32> {
     out
 }
 
+/// How many pairs the walk may test among n arcs before the merge is expected to be faster: walks whose searches
+/// find what is near stay far below it (see `benches/README.md`).
+fn patience(n: usize) -> u64 {
+    let n = n as u64 + 64;
+    40 * n * u64::from(n.ilog2())
+}
+
 impl Free {
     /// F of the slice's barriers that holds a configuration strictly within the phase and on no
     /// arc. None where the slice cannot be unrolled, the configuration lies on an arc, or the pieces do
     /// not fit together.
     ///
-    /// Cost: O(n log n) for an index of the arcs, then in proportion to what the walk round F meets.
-    pub fn new<K: Kernel>(slice: &Slice<K>, at: &Configuration) -> Option<Free> {
+    /// Cost, by walking: O(n log n) for an index of the arcs, then in proportion to what the walk round F meets;
+    /// by merging (DP Lemma 9.2): near-linear times log² n where few pairs of edges are near each other, whatever
+    /// the arcs hidden behind F's boundary do. Both name the same F, and [`Free::found`] tells which ran.
+    pub fn new<K: Kernel>(slice: &Slice<K>, at: &Configuration, way: FaceMethod) -> Option<Free> {
         let strip = Strip::new(slice)?;
         let mut x = at.x.clone();
         if at.chart == Chart::Back {
             x += &Rat::from(2);
         }
-        let b = boundary(
-            &strip.graphs,
-            &strip.uprights,
-            &(x, at.t.clone()),
-            &strip.glue,
-        )
-        .ok()?;
-        Assembly::new(slice, strip, b)?.finish(slice)
+        let cut = crate::face::Strip {
+            graphs: &strip.graphs,
+            uprights: &strip.uprights,
+            glue: &strip.glue,
+            second: &strip.second,
+        };
+        let (b, found) = boundary(&cut, &(x, at.t.clone()), way, patience).ok()?;
+        Assembly::new(slice, strip, b)?.finish(slice, found)
     }
 
     fn kernel(&self) -> MutexGuard<'_, FaceKernel> {
         self.kernel.lock().unwrap_or_else(|e| e.into_inner())
+    }
+    /// Which way led to it.
+    pub fn found(&self) -> Found {
+        self.found
     }
     /// How long the phase lasts.
     pub fn duration(&self) -> &Rat {
@@ -664,7 +678,7 @@ impl Assembly {
         Some((order, cycles))
     }
 
-    fn finish<K: Kernel>(mut self, slice: &Slice<K>) -> Option<Free> {
+    fn finish<K: Kernel>(mut self, slice: &Slice<K>, found: Found) -> Option<Free> {
         let (order, cycles) = self.cycles()?;
         self.mark_rest(&order, &cycles);
         // Vertices that only the cut had are no longer any.
@@ -719,6 +733,7 @@ impl Assembly {
         let mut free = Free {
             kernel: Mutex::new(self.b.kernel),
             duration: slice.frame.duration.to_rat(),
+            found,
             vertices,
             links,
             link_starts,
