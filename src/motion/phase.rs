@@ -5,6 +5,7 @@
 //! `sight`): all of them, O(n) box tests a step, or those that the boundary of F names.
 
 use super::friction::stick_time;
+use super::ledger::FaceCost;
 use super::local::{
     Incident, Landing, Next, Place, State, at_rest_next, contacts, group, incident, is_tangency,
     resolve, rests_on_level, right_sorted, settle, snap,
@@ -41,6 +42,8 @@ pub struct Run<K: Kernel = Filtered> {
     pub method: Method,
     /// F, where the sweep ran; the first, if it led on into another.
     pub free: Option<Rc<Free>>,
+    /// How F was come by, as often as it was.
+    pub faces: FaceCost,
 }
 
 /// What a pawl's run needs besides the slice.
@@ -112,6 +115,7 @@ struct Runner<'a, K: Kernel> {
     /// What ran.
     method: Method,
     free: Option<Rc<Free>>,
+    faces: FaceCost,
     degenerate: u64,
 }
 
@@ -145,6 +149,7 @@ pub fn run<K: Kernel>(
         sight: Box::new(All::new(slice)),
         method: Method::Naive,
         free: None,
+        faces: FaceCost::default(),
         degenerate: 0,
     };
     let stop = r.go(start, touching);
@@ -333,8 +338,14 @@ impl<K: Kernel> Runner<'_, K> {
                 .into_iter()
                 .find(|f| f.locate(&at) == Whereabouts::Inside)
             {
-                Some(f) => Some(f.clone()),
-                None => Free::new(self.slice, &at, self.set.face).map(Rc::new),
+                Some(f) => {
+                    self.faces.reused += 1;
+                    Some(f.clone())
+                }
+                None => {
+                    let made = Free::new(self.slice, &at, self.set.face);
+                    made.inspect(|f| self.faces.found(f.found())).map(Rc::new)
+                }
             }
         });
         match free {
@@ -344,6 +355,7 @@ impl<K: Kernel> Runner<'_, K> {
                 self.method = Method::Sweep;
             }
             None => {
+                self.faces.abandoned += u64::from(self.free.is_some());
                 self.sight = Box::new(All::new(self.slice));
                 self.method = Method::Naive;
             }
@@ -1113,6 +1125,7 @@ impl<K: Kernel> Runner<'_, K> {
             degenerate: self.degenerate,
             method: self.method,
             free: self.free,
+            faces: self.faces,
         }
     }
 }

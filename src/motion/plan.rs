@@ -228,6 +228,7 @@ fn simulate_with<K: Kernel>(
             let limits = pawl.limits.as_ref().map(|(lo, hi)| (num(lo), num(hi)));
             let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
             cost.build += clock.elapsed().as_secs_f64();
+            cost.slices += 1;
             cost.arcs += slice.arcs().len() as u64;
             if let Some(report) = options.progress {
                 let phases = scene.motions.len();
@@ -254,6 +255,7 @@ fn simulate_with<K: Kernel>(
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
             cost.run += clock.elapsed().as_secs_f64();
             if let Some(r) = runs.last() {
+                cost.faces.add(&r.faces);
                 cost.swept += u64::from(r.method == Method::Sweep);
                 cost.half_edges += r.free.as_ref().map_or(0, |f| f.half_edges() as u64);
                 see(Seen {
