@@ -64,6 +64,16 @@ pub(crate) struct Strip<'a> {
     pub(crate) second: &'a [bool],
 }
 
+/// How a face is to be found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) method: Method,
+    /// How many pairs an automatic walk may test.
+    pub(crate) patience: u64,
+    /// How many arcs a leaf of the merge tree takes.
+    pub(crate) leaf: usize,
+}
+
 /// How a face was found.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Found {
@@ -79,8 +89,7 @@ pub struct Found {
 pub(crate) fn boundary(
     strip: &Strip<'_>,
     start: &(Rat, Rat),
-    method: Method,
-    patience: impl Fn(usize) -> u64,
+    way: Way,
 ) -> Result<(Boundary, Found), FaceError> {
     let bad = |i: usize| move |why| FaceError::BadArc(i, 0, why);
     let on = |OnArc(i)| FaceError::StartOnArc(i as usize, 0);
@@ -101,9 +110,9 @@ pub(crate) fn boundary(
         Ok((k, items, start))
     };
     let (mut k, items, z) = read()?;
-    if method != Method::Merge {
-        let budget = match method {
-            Method::Auto => patience(items.len()),
+    if way.method != Method::Merge {
+        let budget = match way.method {
+            Method::Auto => way.patience,
             _ => u64::MAX,
         };
         let walked = walked(k, &items, strip, z, budget).map_err(on)?;
@@ -124,7 +133,7 @@ pub(crate) fn boundary(
         second: strip.second,
         cut,
     };
-    let b = cylinder::conquered(k, &framed, strip.glue, z, &mut merges).map_err(on)?;
+    let b = cylinder::conquered(k, &framed, strip.glue, z, way.leaf, &mut merges).map_err(on)?;
     let method = Method::Merge;
     Ok((b, Found { method, merges }))
 }

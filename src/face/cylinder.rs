@@ -35,8 +35,7 @@ pub(super) struct Strip<'a> {
     pub(super) cut: [NumId; 2],
 }
 
-/// Arcs a leaf of the merge tree, and faces a merge; as in the plane.
-const LEAF: usize = 128;
+/// Faces a merge, as in the plane.
 const WAYS: usize = 16;
 
 /// Arcs that are walked alone to see how the others are best dealt; and from how many on that is done.
@@ -79,15 +78,17 @@ impl Strip<'_> {
     }
 }
 
-/// The face of the start on the cylinder by merges, from leaves of `LEAF` arcs, with what it bounds
+/// The face of the start on the cylinder by merges, from leaves of at most `most` arcs, with what it bounds
 /// named as by the walk. Counts the merges made.
 pub(super) fn conquered(
     mut k: Kernel,
     strip: &Strip<'_>,
     glue: &[Glue],
     start: Point,
+    most: usize,
     merges: &mut u64,
 ) -> Result<Boundary, OnArc> {
+    let most = most.max(1);
     let mut units = strip.units();
     shuffle(&mut units);
     if units.len() >= SAMPLED {
@@ -106,10 +107,10 @@ pub(super) fn conquered(
             units = order.iter().map(|&(_, i)| units[i as usize]).collect();
         }
     }
-    let parts = if units.len() <= LEAF {
+    let parts = if units.len() <= most {
         vec![leaf(&mut k, strip, &units, start)?]
     } else {
-        divide(&mut k, strip, &units, start, merges)?
+        divide(&mut k, strip, &units, start, most, merges)?
     };
     *merges += 1;
     finish(k, strip, glue, parts, start)
@@ -131,12 +132,13 @@ fn divide(
     strip: &Strip<'_>,
     units: &[(u32, u32)],
     start: Point,
+    most: usize,
     merges: &mut u64,
 ) -> Result<Vec<Part>, OnArc> {
-    let ways = units.len().div_ceil(LEAF).min(WAYS);
+    let ways = units.len().div_ceil(most).min(WAYS);
     units
         .chunks(units.len().div_ceil(ways))
-        .map(|u| conquer(k, strip, u, start, merges))
+        .map(|u| conquer(k, strip, u, start, most, merges))
         .collect()
 }
 
@@ -145,12 +147,13 @@ fn conquer(
     strip: &Strip<'_>,
     units: &[(u32, u32)],
     start: Point,
+    most: usize,
     merges: &mut u64,
 ) -> Result<Part, OnArc> {
-    if units.len() <= LEAF {
+    if units.len() <= most {
         return leaf(k, strip, units, start);
     }
-    let parts = divide(k, strip, units, start, merges)?;
+    let parts = divide(k, strip, units, start, most, merges)?;
     *merges += 1;
     let mut all = together(parts);
     let seams = frame(k, strip, &mut all);

@@ -32,7 +32,7 @@ mod stops;
 mod trace;
 
 pub use boundary::Found;
-pub(crate) use boundary::{Boundary, Glue, Strip, boundary};
+pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};
 pub use kernel::Stats;
 pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};

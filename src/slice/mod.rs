@@ -12,10 +12,14 @@
 //! arcs cross, which of two times is earlier, which of two arcs is higher just after a time.
 
 mod arc;
+mod assemble;
 mod build;
 mod free;
+mod names;
 mod predicates;
+mod query;
 mod strip;
+mod valid;
 
 pub use crate::kernel::Time;
 pub use arc::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
