@@ -162,6 +162,7 @@ impl<'a> Ground<'a> {
                     stop: &stop,
                     method: crate::motion::Method::Naive,
                     known: None,
+                    face: crate::face::Method::Auto,
                 };
                 run(&slice, &set, &start.angles[i], &start.touching[i])
             })

@@ -17,6 +17,7 @@
 mod approx;
 mod boundary;
 mod compare;
+mod cylinder;
 mod hash;
 mod island;
 mod isolate;
@@ -30,7 +31,8 @@ mod run;
 mod stops;
 mod trace;
 
-pub(crate) use boundary::{Boundary, Glue, boundary};
+pub use boundary::Found;
+pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};
 pub use kernel::Stats;
 pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};

@@ -30,6 +30,8 @@ pub struct Options<'a> {
     pub arithmetic: Arithmetic,
     /// Which algorithm runs.
     pub method: Method,
+    /// The way to F, where the sweep runs.
+    pub face: crate::face::Method,
 }
 
 /// Which numbers decide.
@@ -157,6 +159,7 @@ pub fn slices(
         progress: options.progress,
         arithmetic: Arithmetic::Filtered,
         method: Method::Sweep,
+        face: options.face,
     };
     simulate_with::<Filtered>(scene, &options, see)
 }
@@ -225,6 +228,7 @@ fn simulate_with<K: Kernel>(
             let limits = pawl.limits.as_ref().map(|(lo, hi)| (num(lo), num(hi)));
             let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
             cost.build += clock.elapsed().as_secs_f64();
+            cost.slices += 1;
             cost.arcs += slice.arcs().len() as u64;
             if let Some(report) = options.progress {
                 let phases = scene.motions.len();
@@ -245,11 +249,13 @@ fn simulate_with<K: Kernel>(
                 stop: &stop,
                 method: options.method,
                 known: None,
+                face: options.face,
             };
             let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
             cost.run += clock.elapsed().as_secs_f64();
             if let Some(r) = runs.last() {
+                cost.faces.add(&r.faces);
                 cost.swept += u64::from(r.method == Method::Sweep);
                 cost.half_edges += r.free.as_ref().map_or(0, |f| f.half_edges() as u64);
                 see(Seen {

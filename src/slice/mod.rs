@@ -12,12 +12,16 @@
 //! arcs cross, which of two times is earlier, which of two arcs is higher just after a time.
 
 mod arc;
+mod assemble;
 mod build;
 mod free;
+mod names;
 mod predicates;
+mod query;
 mod scout;
 mod shop;
 mod strip;
+mod valid;
 
 pub use crate::kernel::Time;
 pub use arc::{Arc, ArcId, Curve, CurveId, End, Exact, Shape, Side};

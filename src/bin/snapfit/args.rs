@@ -206,6 +206,9 @@ pub(crate) struct Engine {
     /// Which algorithm runs
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) method: Method,
+    /// Which way the sweep comes by the free component
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) face: snapfit::face::Method,
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub(crate) time_limit: Option<Duration>,

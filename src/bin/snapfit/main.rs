@@ -219,6 +219,7 @@ fn simulated(
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
         method: method(engine),
+        face: engine.face,
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);

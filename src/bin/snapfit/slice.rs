@@ -56,6 +56,7 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
     };
     let options = Options {
         deadline: super::deadline(engine),
+        face: engine.face,
         ..Options::default()
     };
     let mut found = None;
