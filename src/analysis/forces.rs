@@ -18,13 +18,15 @@ use super::peak::{Instant, Peak, Peaked, force, higher, torque};
 use super::stretch::{Stretch, stretches};
 use crate::geometry::Vec2;
 use crate::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
-use crate::number::Rat;
+use crate::number::{Algebraic, Rat};
 use crate::report::Num;
 use crate::report::json::ContactDocument;
 use crate::scene::{Motion, Scene};
 use crate::slice::Time;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::VecDeque;
 
 /// The result of `forces`. Every enclosure is a pair of exact rationals, narrower than the digits
 /// asked for where the search settled.
@@ -448,7 +450,12 @@ struct Way<'a> {
     goal: u32,
     wish: &'a Wish,
     mu: Rat,
+    /// The last irrational instants that were written.
+    clocks: RefCell<VecDeque<(usize, Algebraic, Num)>>,
 }
+
+/// How many instants are kept: those of a segment and its peak, and as many more.
+const KEPT: usize = 6;
 
 impl<'a> Way<'a> {
     fn new(scene: &'a Scene, ground: &Ground<'_>, run: &'a Trajectory, wish: &'a Wish) -> Way<'a> {
@@ -480,16 +487,32 @@ impl<'a> Way<'a> {
             goal,
             wish,
             mu,
+            clocks: RefCell::default(),
         }
     }
 
+    /// An instant of a phase on the plan's clock. Neighbouring segments and their peaks share their
+    /// instants, and an irrational one is dear to write: the last few are kept.
     fn clock(&self, phase: usize, t: &Time) -> Num {
         let from = &self.run.phases[phase].from;
-        match t.as_rat() {
-            Some(t) => Num::of_rat(&(from + t)),
-            None if from.is_zero() => Num::of(t.exact()),
-            None => Num::of(&t.affine(from, &Rat::one())),
+        if let Some(t) = t.as_rat() {
+            return Num::of_rat(&(from + t));
         }
+        let mut kept = self.clocks.borrow_mut();
+        let exact = t.exact();
+        if let Some((.., num)) = kept.iter().find(|(k, e, _)| *k == phase && e.same_handle(exact)) {
+            return num.clone();
+        }
+        let num = if from.is_zero() {
+            Num::of(exact)
+        } else {
+            Num::of(&t.affine(from, &Rat::one()))
+        };
+        if kept.len() == KEPT {
+            kept.pop_front();
+        }
+        kept.push_back((phase, exact.clone(), num.clone()));
+        num
     }
 
     fn between(&self, phase: usize, a: &Rat, b: &Rat) -> When {
