@@ -35,20 +35,14 @@ pub(crate) struct SafeStep {
 
 impl Run<'_> {
     /// One safe step from a configuration without violations. Bodies that turn out to meet
-    /// without being joined are added to `extra`, to be kept apart from now on. `promise`: about
-    /// what the step may gain.
-    pub(crate) fn safe_step(
-        &mut self,
-        poses: &[Pose],
-        placed: &[Placed],
-        moved: bool,
-        promise: f64,
-    ) -> SafeStep {
+    /// without being joined are added to `extra`, to be kept apart from now on.
+    pub(crate) fn safe_step(&mut self, poses: &[Pose], placed: &[Placed], moved: bool) -> SafeStep {
         let mut selection = self.selection(placed, moved);
         let (mut pairs, mut rows) = self.rows(&selection, placed);
         // What rounding takes is held back from the first, but no more than half of what there is,
         // so that standing still stays allowed.
-        let first = 4.0 * self.grain(promise).distance();
+        let grain = self.grain();
+        let first = 4.0 * grain.distance();
         let start = vec![[0.0; 3]; poses.len()];
         let keep = |row: &Row| first.min(linear(row, &start) / 2.0).max(0.0);
         let mut held: Vec<f64> = rows.iter().map(keep).collect();
@@ -72,8 +66,7 @@ impl Run<'_> {
                 // Too much was held back: shorten the step that is known.
                 break;
             };
-            let grain = self.grain(double(&solved.objective));
-            let trial = self.moved(poses, &direction, 1.0, grain);
+            let trial = grain.moved(poses, &self.scaffold.forms, &direction, 1.0);
             let there = self.scaffold.place(&trial);
             let pad = 4.0 * grain.distance();
             let mut short = false;
@@ -130,8 +123,7 @@ impl Run<'_> {
         let mut scale = 1.0;
         for _ in 0..HALVINGS {
             scale /= 2.0;
-            let grain = self.grain(double(&solved.objective) * scale);
-            let trial = self.moved(poses, &direction, scale, grain);
+            let trial = grain.moved(poses, &self.scaffold.forms, &direction, scale);
             let there = self.scaffold.place(&trial);
             if self.exceeds(&pairs, &there, &Rat::zero()) {
                 continue;
