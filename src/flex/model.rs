@@ -96,23 +96,6 @@ pub(crate) struct Row {
     pub(crate) theta1: Int,
     pub(crate) theta2: Int,
     pub(crate) d0: Int,
-    /// What d₀ and the normal are multiplied by: d₀ over it is the distance times the length of
-    /// the line's normal in its body's frame.
-    pub(crate) scale: Int,
-}
-
-impl Row {
-    /// The same row times a positive integer.
-    pub(crate) fn times(&self, f: &Int) -> Row {
-        Row {
-            pair: self.pair,
-            normal: [&self.normal[0] * f, &self.normal[1] * f],
-            theta1: &self.theta1 * f,
-            theta2: &self.theta2 * f,
-            d0: &self.d0 * f,
-            scale: &self.scale * f,
-        }
-    }
 }
 
 fn line(normal: IntVec, base: IntVec, h: Int) -> Line {
@@ -241,6 +224,12 @@ impl Scaffold {
 
     /// The row of a pair.
     pub(crate) fn row(&self, pair: &Pair, placed: &[Placed]) -> Row {
+        self.scaled_row(pair, placed).0
+    }
+
+    /// The row of a pair, and what its d₀ and normal are multiplied by: d₀ over that is the
+    /// distance times the length of the line's normal in its body's frame.
+    pub(crate) fn scaled_row(&self, pair: &Pair, placed: &[Placed]) -> (Row, Int) {
         let (one, two) = (pair.line_body as usize, pair.point_body as usize);
         let line = self.line(one, pair.plane);
         let (p1, p2) = (&placed[one], &placed[two]);
@@ -276,14 +265,14 @@ impl Scaffold {
             theta2 = &theta2 * h;
             d0 = &d0 * h - &last;
         }
-        Row {
+        let row = Row {
             pair: *pair,
             normal,
             theta1,
             theta2,
             d0,
-            scale,
-        }
+        };
+        (row, scale)
     }
 
     /// The signed distance of a pair in doubles, and a bound of its error.

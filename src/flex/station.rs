@@ -76,21 +76,27 @@ impl Stations {
         placed: &[Placed],
         rounding: Rounding,
     ) -> Row {
-        let true_row = scaffold.row(pair, placed);
+        let (there, true_scale) = scaffold.scaled_row(pair, placed);
         if self.start {
-            return true_row;
+            return there;
         }
-        let mut row = scaffold.row(pair, &self.placed);
-        // The distance times |N| is d₀ over the row's scale. It becomes a multiple of u = 2ᵏ over
-        // the station's scale, which is the grain or a little less.
-        let unit = self.grain * length(&row);
-        let k = unit.log2().floor().clamp(-200.0, 1000.0) as i64;
-        if k < 0 {
-            row = row.times(&Int::one().shl(k.unsigned_abs()));
-        }
+        let (mut row, scale) = scaffold.scaled_row(pair, &self.placed);
+        // Coefficients without common factor, so that what is left of the distances is dyadic.
+        let content = content(scaffold, &row);
+        // A part that has no column need not be divisible, and is not read.
+        let part = |v: &Int| v.div_rem_floor(&content).0;
+        row.normal = [part(&row.normal[0]), part(&row.normal[1])];
+        (row.theta1, row.theta2) = (part(&row.theta1), part(&row.theta2));
+        // d₀ is to be a multiple of 2ᵏ, which is the grain or a little less; for k < 0 the row is
+        // multiplied by 2⁻ᵏ.
+        let k = (self.grain * length(&row)).log2().floor();
+        let k = k.clamp(-200.0, 1000.0) as i64;
+        let up = k.min(0).unsigned_abs();
+        row.normal = row.normal.map(|v| v.shl(up));
+        (row.theta1, row.theta2) = (row.theta1.shl(up), row.theta2.shl(up));
         let k = k.max(0) as u64;
-        let top = &true_row.d0 * &row.scale;
-        let bottom = true_row.scale.shl(k);
+        let top = (&there.d0 * &scale).shl(up);
+        let bottom = (&true_scale * &content).shl(k);
         let top = match rounding {
             Rounding::Down => top,
             Rounding::Nearest => top + bottom.shr(1),
@@ -100,11 +106,15 @@ impl Stations {
     }
 }
 
+/// The greatest common divisor of what a row has in the program's columns; 1 where that is nothing.
+fn content(scaffold: &Scaffold, row: &Row) -> Int {
+    let entries = scaffold.entries(row);
+    let g = entries.iter().fold(Int::zero(), |g, (_, v)| g.gcd(v));
+    if g.is_zero() { Int::one() } else { g }
+}
+
 /// |n| of a row, roughly.
 fn length(row: &Row) -> f64 {
-    let [x, y] = row
-        .normal
-        .each_ref()
-        .map(|v| double(&Rat::from(v.clone())));
+    let [x, y] = row.normal.each_ref().map(|v| double(&Rat::from(v.clone())));
     x.hypot(y).max(f64::MIN_POSITIVE)
 }

@@ -204,6 +204,8 @@ struct Taken {
     scale: Rat,
     next: Option<Vec<Pose>>,
     proof: Option<ProofSize>,
+    /// What a safe step's program promised; zero for a fast one.
+    promise: f64,
 }
 
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
@@ -320,6 +322,7 @@ impl<'a> Run<'a> {
                     scale: safe.scale,
                     next: safe.next,
                     proof: safe.proof,
+                    promise: safe.promise,
                 }
             } else {
                 let selection = self.selection(&placed, k > 0);
@@ -341,6 +344,7 @@ impl<'a> Run<'a> {
                     scale: scale.unwrap_or_else(Rat::zero),
                     next,
                     proof: None,
+                    promise: 0.0,
                 }
             };
             pairs.clone_from(&taken.pairs);
@@ -358,7 +362,7 @@ impl<'a> Run<'a> {
             if rules.path == Path::Safe && !stopped && gain.sign() < 0 {
                 // Nothing is violated on a safe path, so nothing calls for a step back: it comes
                 // from what is held back, and there is nothing more to gain.
-                out.ending = Ending::Converged;
+                out.ending = self.settled(taken.promise);
                 break;
             }
             let contact = if clear && self.options.contact && taken.proof.is_none() {
@@ -400,7 +404,7 @@ impl<'a> Run<'a> {
                 && gain.sign() < 0
                 && (&gain + &steps[steps.len() - 2].gain).abs() < rules.gain;
             if gain.abs() < rules.gain || swings {
-                out.ending = Ending::Converged;
+                out.ending = self.settled(taken.promise);
                 break;
             }
         }
@@ -410,6 +414,16 @@ impl<'a> Run<'a> {
         }
         out.violation = self.worst(&pairs, &placed);
         out
+    }
+
+    /// How a run ends that gains no more: converged, unless its program promised a safe step
+    /// much more than what could be proven.
+    fn settled(&self, promise: f64) -> Ending {
+        if promise > 10.0 * double(&self.structure.step.gain) {
+            Ending::Undecided
+        } else {
+            Ending::Converged
+        }
     }
 
     fn tell(&self, step: usize, out: &Flexed, gain: f64, rows: usize) {
