@@ -12,6 +12,7 @@
 //! | `shape` | where does a body stand, in integers? |
 //! | `pairs` | which point is to stay on its side of which line? |
 //! | `model` | what are the distances, gradients and objective there? |
+//! | `station`, `grain` | where are gradients taken, and how are poses rounded? |
 //! | `step` | how far may a step go, and where does it end? |
 //! | `generate` | the paper's families of structures |
 //!
@@ -22,6 +23,7 @@ pub mod apps;
 mod bound;
 mod branch;
 pub mod generate;
+mod grain;
 mod model;
 mod motion;
 mod mps;
@@ -32,6 +34,7 @@ pub mod report;
 mod safe;
 mod schema;
 mod shape;
+mod station;
 mod step;
 mod types;
 mod write;
