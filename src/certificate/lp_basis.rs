@@ -9,8 +9,8 @@
 //! If all N ≡ D·X nearest to zero are so small that the kernel's equations hold as integers below
 //! qᴷ, they hold. Signs come from the leading digits, zeros from the residues.
 //!
-//! Every step is plain 64-bit arithmetic modulo a 31-bit prime fixed at compile time. A bad order,
-//! place or denominator can only lead to rejection.
+//! Every step is plain arithmetic in machine words modulo a 31-bit prime fixed at compile time. A
+//! bad order, place or denominator can only lead to rejection.
 
 use super::lp::{Rejection, lcm, reject};
 use crate::lp::{Model, Place};
@@ -30,6 +30,8 @@ const SECOND: u64 = 2_147_483_629;
 const NONE: u32 = u32::MAX;
 /// Bits of a digit, rounded down.
 const DIGIT: u64 = 30;
+/// Bits of the largest row or column sum of sizes: with a digit more it must fit an `i128`.
+const NORM: u64 = 92;
 
 /// The exact objective at the basis, once it is shown to be optimal.
 pub(super) fn objective(model: &Model, evidence: &Evidence<'_>) -> Result<Rat, Rejection> {
@@ -56,7 +58,7 @@ fn no<T>(why: &str) -> Result<T, Trouble> {
     Err(Trouble::No(Rejection(why.to_string())))
 }
 
-type Line = Vec<(u32, i64)>;
+type Line = Vec<(u32, i128)>;
 
 /// The scaled program and the kernel's shape.
 struct Check<'a> {
@@ -92,14 +94,14 @@ impl<'a> Check<'a> {
         }
         let mut rows: Vec<Line> = vec![Vec::new(); m];
         let mut columns: Vec<Line> = Vec::with_capacity(n);
-        let mut row_sum = vec![0i64; m];
+        let mut row_sum = vec![0i128; m];
         let mut norm = 1;
         for (j, c) in model.columns.iter().enumerate() {
             let mut column = Vec::with_capacity(c.entries.len());
-            let mut sum = 0i64;
+            let mut sum = 0i128;
             for (i, a) in &c.entries {
                 let v = a.numer() * &row_scale[*i as usize].div_exact(a.denom());
-                let Some(v) = v.to_i64().filter(|v| v.unsigned_abs() < 1 << 58) else {
+                let Some(v) = v.to_i128().filter(|v| v.unsigned_abs() < 1 << NORM) else {
                     return reject("coefficients are too long for this kind of certificate");
                 };
                 let total = &mut row_sum[*i as usize];
@@ -108,13 +110,13 @@ impl<'a> Check<'a> {
                 rows[*i as usize].push((j as u32, v));
                 column.push((*i, v));
             }
-            norm = norm.max(64 - u64::from(sum.leading_zeros()));
+            norm = norm.max(128 - u64::from(sum.leading_zeros()));
             columns.push(column);
         }
         for s in row_sum {
-            norm = norm.max(64 - u64::from(s.leading_zeros()));
+            norm = norm.max(128 - u64::from(s.leading_zeros()));
         }
-        if norm > 60 {
+        if norm > NORM {
             return reject("coefficients are too long for this kind of certificate");
         }
         let mut bound_scale = Int::one();
@@ -358,7 +360,7 @@ impl<'a> Check<'a> {
             for &(j, a) in &self.rows[i as usize] {
                 let s = self.column_step[j as usize];
                 if s != NONE {
-                    value[s as usize] = a.rem_euclid(Q as i64) as u64;
+                    value[s as usize] = a.rem_euclid(i128::from(Q)) as u64;
                     seen[s as usize] = true;
                     heap.push(std::cmp::Reverse(s));
                 }
@@ -529,7 +531,7 @@ impl Digits {
                 solve(&mut work);
                 for (i, r) in residue.iter_mut().enumerate() {
                     for &(j, a) in &lines[i] {
-                        *r -= i128::from(a) * i128::from(work[j as usize]);
+                        *r -= a * i128::from(work[j as usize]);
                     }
                     *r /= i128::from(Q);
                 }
@@ -590,7 +592,7 @@ impl Digits {
     }
 
     /// The sign of Σ a·X − c.
-    fn sign<const Q: u64>(&self, terms: &[(u32, i64)], constant: &Int) -> i32 {
+    fn sign<const Q: u64>(&self, terms: &[(u32, i128)], constant: &Int) -> i32 {
         if terms.is_empty() {
             return -constant.sign();
         }
@@ -598,7 +600,7 @@ impl Digits {
         let mut spread = 0i128;
         for &(k, a) in terms {
             sum += &(&self.leading[k as usize] * &Int::from(a));
-            spread += i128::from(a).abs();
+            spread += a.abs();
         }
         let mut off = Int::from(spread) * self.error.clone();
         if !constant.is_zero() {
@@ -620,7 +622,7 @@ impl Digits {
         for (k, x) in self.digits.iter().enumerate() {
             carry -= sign * i128::from(feed.get(k).copied().unwrap_or(0));
             for &(j, a) in terms {
-                carry += i128::from(a) * i128::from(x[j as usize]);
+                carry += a * i128::from(x[j as usize]);
             }
             let r = carry.rem_euclid(i128::from(Q));
             zero &= r == 0;
