@@ -14,7 +14,7 @@
 //! in size, hence zero exactly where Σ aⱼxⱼ ≡ c modulo M; most non-zeros show in the first digit.
 
 use super::budget::{Budget, Exhausted};
-use super::field::Prime;
+use super::field::{Double, Prime};
 use super::lu::{Lu, Singular, factorise};
 use super::problem::{Matrix, Problem};
 use super::reconstruct::reconstruct;
@@ -24,6 +24,10 @@ use crate::number::Int;
 const PRECISION: usize = 4;
 /// Random combinations whose denominators are joined.
 const COMBINATIONS: usize = 6;
+/// Factors that are added to a denominator before it is given up.
+const COMPLETIONS: usize = 4;
+/// Rows of a kernel below which it is not worth while to foresee the denominator's length.
+const SMALL: usize = 50;
 
 /// A square part of the program's matrix, factorised modulo a prime.
 #[derive(Clone, Debug)]
@@ -117,26 +121,67 @@ impl Kernel {
         if let Some(d) = guess {
             let extra = (self.norm_bits.max(rhs_bits) / 57) as usize;
             let digits = (d.bits() / 56) as usize + 2 * extra + PRECISION + 2;
-            lift.extend(digits, budget)?;
-            if let Ok(s) = lift.prove(d) {
-                return Ok(s);
+            // Often it lacks but a small factor, which shows a little later.
+            for more in [0, digits / 32 + 2, digits / 8 + 2] {
+                lift.extend(digits + more, budget)?;
+                if more == 0 {
+                    if let Ok(s) = lift.prove(d) {
+                        return Ok(s);
+                    }
+                } else if let Some(d) = lift.denominator(more as u64, d.clone())
+                    && let Some(s) = lift.prove_or_complete(d)
+                {
+                    return Ok(s);
+                }
             }
         }
+        let target = self.expected_digits(rhs_bits);
         let mut digits = lift.digits.len().max(2);
         let mut salt = 0;
         loop {
             lift.extend(digits, budget)?;
-            let mut denominator = lift.denominator(salt);
-            while let Some(d) = &denominator {
-                match lift.prove(d) {
-                    Ok(s) => return Ok(s),
-                    Err(missing) => denominator = missing.map(|t| d * &t),
-                }
+            if let Some(d) = lift.denominator(salt, Int::one())
+                && let Some(s) = lift.prove_or_complete(d)
+            {
+                return Ok(s);
             }
             budget.check()?;
             salt += 1;
-            digits += 1 + digits / 6;
+            // Denominators far below the determinant are looked for on the way to it.
+            digits += match target {
+                Some(t) if digits < t && 4 * digits > 3 * t => t - digits,
+                Some(t) if digits < t => 1 + (3 * digits / 10).min(t - digits),
+                _ => 1 + digits / 6,
+            };
         }
+    }
+
+    /// Digits that show a solution whose denominator is the whole determinant, by floats.
+    fn expected_digits(&self, rhs_bits: u64) -> Option<usize> {
+        if self.size() < SMALL {
+            return None;
+        }
+        let n = self.size();
+        let entry = |e: usize| mantissa(&self.by_columns.int(e));
+        let mut high = vec![i64::MIN; n];
+        for e in 0..self.by_columns.index.len() {
+            let place = &mut high[self.by_columns.index[e] as usize];
+            *place = (*place).max(entry(e).1);
+        }
+        let columns: Vec<Vec<(u32, f64)>> = (0..n)
+            .map(|j| {
+                let span = self.by_columns.span(j);
+                span.map(|e| {
+                    let (i, (a, x)) = (self.by_columns.index[e], entry(e));
+                    (i, ldexp(a, x - high[i as usize]))
+                })
+                .collect()
+            })
+            .collect();
+        let lu = factorise(&Double, &columns, 0.1, 1e-13).ok()?;
+        let bits = lu.log2_determinant() + high.iter().sum::<i64>() as f64;
+        let bits = 2.0 * bits.clamp(0.0, 1e12) + 2.0 * (rhs_bits + 64) as f64;
+        Some((bits / 56.0) as usize + PRECISION)
     }
 }
 
@@ -145,11 +190,9 @@ fn residue(field: &Prime, words: &[u64]) -> u64 {
     let Some((&top, rest)) = words.split_last() else {
         return 0;
     };
-    let mut r = field.residue(top as i64);
-    for &w in rest.iter().rev() {
-        r = (((u128::from(r) << 64) | u128::from(w)) % u128::from(field.p)) as u64;
-    }
-    r
+    rest.iter()
+        .rev()
+        .fold(field.residue(top as i64), |r, &w| field.append(r, w))
 }
 
 /// Digits base p of an integer, all of its sign.
@@ -290,18 +333,13 @@ impl<'a> Lifting<'a> {
         Ok(())
     }
 
-    /// A common denominator of all components, likely but not certain.
-    fn denominator(&self, salt: u64) -> Option<Int> {
+    /// A common denominator of all components, likely but not certain: a multiple of `d`.
+    fn denominator(&self, salt: u64, mut d: Int) -> Option<Int> {
         let modulus = self.p.pow(self.digits.len() as u32);
-        let mut d = Int::one();
         for c in 0..COMBINATIONS {
             let combined = self.combination(salt * COMBINATIONS as u64 + c as u64);
-            let u = if c == 0 {
-                combined
-            } else {
-                (&combined * &d).div_rem_floor(&modulus).1
-            };
-            if c > 0 && nearest(&u, &modulus).bits() + 44 < modulus.bits() {
+            let u = (&combined * &d).div_rem_floor(&modulus).1;
+            if nearest(&u, &modulus).bits() + 44 < modulus.bits() {
                 continue; // already integral
             }
             d = &d * &reconstruct(&u, &modulus)?.1;
@@ -332,6 +370,18 @@ impl<'a> Lifting<'a> {
             })
             .collect();
         compose(&parts, &self.p)
+    }
+
+    /// The solution if `d`, or a multiple of it that shows, is a denominator and there are digits
+    /// enough to prove it.
+    fn prove_or_complete(&mut self, mut d: Int) -> Option<Solution> {
+        for _ in 0..COMPLETIONS {
+            match self.prove(&d) {
+                Ok(s) => return Some(s),
+                Err(missing) => d = &d * &missing?,
+            }
+        }
+        None
     }
 
     /// The solution if `d` is a denominator and there are digits enough to prove it; else perhaps
