@@ -15,6 +15,7 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod approx;
+mod bands;
 mod boundary;
 mod compare;
 mod hash;

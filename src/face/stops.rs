@@ -7,6 +7,7 @@
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
+use super::bands::Bands;
 use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
 use super::trace::Tracer;
@@ -80,7 +81,7 @@ impl Window {
 /// How many others a window at this depth may have before it is halved.
 fn crowd(depth: usize) -> usize {
     if depth < DEEPEST {
-        8 + depth * depth / 8
+        16 + depth * depth / 8
     } else {
         usize::MAX
     }
@@ -88,6 +89,11 @@ fn crowd(depth: usize) -> usize {
 
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
+
+/// How many items a search may find in vain, on average, before bands are made; and how many in all before that
+/// is asked.
+const VAIN: u64 = 16;
+const PATIENT: u64 = 4096;
 
 /// A window whose stops are known, and those as a range of `stops`.
 #[derive(Clone, Copy)]
@@ -281,8 +287,23 @@ impl Tracer<'_> {
                 at = link.next;
             }
         }
-        let (mut few, mut tests) = (true, 0);
-        self.tree.query(hull, |b| {
+        let (mut few, mut tests, mut wasted) = (true, 0, 0);
+        let bands = &self.bands;
+        let entries = self.tree.entries();
+        let wanted = |at: usize, node: &Hull| {
+            !node.apart(hull)
+                && match me.carrier {
+                    Carrier::Graph(c) if at >= entries && !bands.is_empty() => !bands.apart(
+                        k,
+                        at,
+                        c,
+                        node.bounds[0].max(hull.bounds[0]),
+                        node.bounds[1].min(hull.bounds[1]),
+                    ),
+                    _ => true,
+                }
+        };
+        self.tree.descend(wanted, |b| {
             if stamp[b as usize] == serial {
                 return true;
             }
@@ -299,6 +320,7 @@ impl Tracer<'_> {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
                 if lo > hi || k.miss(c, d, lo, hi) {
+                    wasted += 1;
                     return true;
                 }
                 if busy.is_some()
@@ -314,6 +336,10 @@ impl Tracer<'_> {
             few
         });
         self.tests += tests;
+        self.wasted += wasted;
+        if self.bands.is_empty() && self.wasted > VAIN * u64::from(serial) + PATIENT {
+            self.bands = Bands::new(self.k, self.items, &self.tree);
+        }
         few
     }
 

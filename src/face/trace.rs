@@ -10,6 +10,7 @@
 //! only pairs of different colours are tested.
 
 use super::approx::Approx;
+use super::bands::Bands;
 use super::hash::FastMap;
 use super::item::Place;
 pub(crate) use super::item::{Carrier, Comp, Item, NONE, Point};
@@ -94,7 +95,7 @@ struct Ray {
 pub(crate) struct Tracer<'a> {
     pub(super) k: &'a mut Kernel,
     pub(super) items: &'a [Item],
-    comps: &'a [Comp],
+    pub(super) comps: &'a [Comp],
     pub(super) tree: Tree,
     pub(super) windows: Vec<Window>,
     pub(super) vertices: Vec<Vertex>,
@@ -115,6 +116,9 @@ pub(crate) struct Tracer<'a> {
     /// Pairs tested for a meeting, and how many may be before the walk is given up.
     pub(super) tests: u64,
     pub(super) budget: u64,
+    /// Those of them that searches found in vain, and the bands that were made when they were too many.
+    pub(super) wasted: u64,
+    pub(super) bands: Bands,
     /// Buffers.
     pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
@@ -162,6 +166,8 @@ impl<'a> Tracer<'a> {
             busy: FastMap::default(),
             tests: 0,
             budget: u64::MAX,
+            wasted: 0,
+            bands: Bands::default(),
             through: Vec::new(),
             hits: Vec::new(),
             near: Vec::new(),
@@ -477,7 +483,7 @@ impl<'a> Tracer<'a> {
         let (mut through, mut beside) = (None, None);
         {
             tree.descend(
-                |n| {
+                |_, n| {
                     n.bounds[0] <= b && a <= n.bounds[1] && {
                         let (lo, hi) = n.t_over(a, b);
                         lo <= ceiling && hi >= floor.get()
