@@ -500,7 +500,10 @@ impl<'a> Way<'a> {
         }
         let mut kept = self.clocks.borrow_mut();
         let exact = t.exact();
-        if let Some((.., num)) = kept.iter().find(|(k, e, _)| *k == phase && e.same_handle(exact)) {
+        if let Some((.., num)) = kept
+            .iter()
+            .find(|(k, e, _)| *k == phase && e.same_handle(exact))
+        {
             return num.clone();
         }
         let num = if from.is_zero() {
