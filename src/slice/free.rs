@@ -21,7 +21,7 @@ use crate::kernel::Kernel;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -135,7 +135,7 @@ pub struct Interval {
 
 /// F, see the module.
 pub struct Free {
-    pub(super) kernel: Mutex<FaceKernel>,
+    pub(super) kernel: Arc<Mutex<FaceKernel>>,
     pub(super) duration: Rat,
     pub(super) start: Configuration,
     pub(super) found: Found,
@@ -218,6 +218,12 @@ impl Free {
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 
+    /// F with the names of the arcs through its vertices lost, to see that a damaged F is found out.
+    #[cfg(test)]
+    pub(crate) fn forget_links(&mut self) {
+        self.links.clear();
+        self.link_starts.fill(0);
+    }
     pub(super) fn kernel(&self) -> MutexGuard<'_, FaceKernel> {
         self.kernel.lock().unwrap_or_else(|e| e.into_inner())
     }
