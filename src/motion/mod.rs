@@ -23,6 +23,9 @@
 //! algorithm) or those on F's boundary (the `sweep`). [`ledger`] counts, [`root`] finds the root's
 //! collision, [`solids`] holds the obstacles for it, [`plan`] strings phases together, `replay` starts anew on a slice that is there, [`trajectory`] holds what comes out.
 
+mod beside;
+mod close;
+mod enter;
 pub mod friction;
 pub mod ledger;
 mod local;
@@ -32,11 +35,12 @@ mod replay;
 pub mod root;
 mod sight;
 pub mod solids;
+mod start;
 mod sweep;
 pub mod trajectory;
 
 pub use ledger::Ledger;
-pub use phase::{Method, Run};
+pub use phase::{Method, Run, SWEEP_FROM};
 pub use plan::{Arithmetic, Options, PlanError, Seen, simulate, slices};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,

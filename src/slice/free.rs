@@ -309,6 +309,10 @@ impl Free {
         let v = &self.vertices[v as usize];
         let mut k = self.kernel();
         let t = time_of(&mut k, v.num, v.curve);
+        if v.cut {
+            // It lies on both sides of the strip: by the lower one.
+            return (Chart::Rest, Algebraic::from(Rat::from(-1)), t);
+        }
         let x = k.exact(v.num).clone();
         let one = Rat::one();
         if x.cmp_rat(&one).is_le() {

@@ -256,13 +256,14 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     let arithmetic = arithmetic(engine);
     Ok(Provenance {
         arithmetic: arithmetic.name(),
-        method: method(engine).under(&arithmetic).name(),
+        method: method(engine).under(&arithmetic),
     })
 }
 
 /// The algorithm that the options ask for.
 fn method(engine: &Engine) -> motion::Method {
     match engine.method {
+        Method::Auto => motion::Method::Auto,
         Method::Sweep => motion::Method::Sweep,
         Method::Naive => motion::Method::Naive,
     }
