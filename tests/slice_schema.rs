@@ -44,11 +44,13 @@ fn validate(root: &Value, schema: &Value, value: &Value) -> Result<(), String> {
             }
             "const" => rule == value,
             "pattern" => {
-                // One word of several.
-                let words = rule.as_str().unwrap();
-                let words = words.strip_prefix("^(").and_then(|w| w.strip_suffix(")$"));
-                let words: Vec<&str> = words.unwrap().split('|').collect();
-                value.as_str().is_none_or(|v| words.contains(&v))
+                let (text, rule) = (value.as_str(), rule.as_str().unwrap());
+                match rule.strip_prefix("^(").and_then(|w| w.strip_suffix(")$")) {
+                    // One word of several.
+                    Some(words) => text.is_none_or(|v| words.split('|').any(|w| w == v)),
+                    // A rational.
+                    None => text.is_none_or(|v| v.parse::<Rat>().is_ok()),
+                }
             }
             "enum" => rule.as_array().unwrap().contains(value),
             "anyOf" | "oneOf" => {
