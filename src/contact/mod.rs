@@ -20,7 +20,7 @@ mod trig;
 mod window;
 
 pub use cone::Cones;
-pub use patch::{Frame, Patch, patches, patches_within};
+pub use patch::{Frame, Pair, Patch, pairs_within, patches};
 pub use shape::{Convexity, Normals, ObstacleShape, PawlShape, Ring};
 pub use trig::{Chart, Trig};
 

@@ -91,7 +91,11 @@ impl<R: Scalar> Edges<R> {
             let mut bits = 0;
             for k in self.part(k / PART) {
                 let (into, out) = (&v[k] - &v[(k + n - 1) % n], &v[(k + 1) % n] - &v[k]);
-                let turn = into.cross(&out).sign();
+                let rough = || into.enclosed().cross(&out.enclosed()).sign();
+                let turn = match if R::EXACT { rough() } else { 0 } {
+                    0 => into.cross(&out).sign(),
+                    s => s,
+                };
                 if if left { turn > 0 } else { turn < 0 } {
                     bits |= 1 << (k % PART);
                 }
@@ -141,7 +145,7 @@ impl<R: Scalar> Index<usize> for Convexity<R> {
     }
 }
 
-/// A closed ring of vertices in listing order, with the side on which the solid lies.
+/// A closed ring of vertices in listing order, with the side on which the solid lies. A copy costs O(1).
 #[derive(Clone, Debug)]
 pub struct Ring<R = Rat> {
     /// Vertices as listed.
@@ -150,10 +154,10 @@ pub struct Ring<R = Rat> {
     pub normals: Normals<R>,
     /// Which vertices are strictly convex.
     pub convex: Convexity<R>,
-    /// The boxes of the edges, made when first asked for.
-    index: OnceLock<Chain>,
+    /// The boxes of the edges, made when first asked for; shared by all copies, as everything else is.
+    index: Arc<OnceLock<Chain>>,
     /// The ring in certified intervals, made when first asked for.
-    rough: OnceLock<Box<Ring<Enclosed>>>,
+    rough: Arc<OnceLock<Box<Ring<Enclosed>>>>,
 }
 
 impl<R: Scalar> Ring<R> {
@@ -169,8 +173,8 @@ impl<R: Scalar> Ring<R> {
             vertices,
             normals: Normals(edges.clone()),
             convex: Convexity(edges),
-            index: OnceLock::new(),
-            rough: OnceLock::new(),
+            index: Arc::default(),
+            rough: Arc::default(),
         }
     }
     /// The ring in certified intervals, made once: normals when asked for, and no convexity, which intervals

@@ -118,10 +118,10 @@ impl<K: Kernel> Runner<'_, K> {
         let slice = self.slice;
         let seam = K::Root::of(K::side(above));
         let mut bound = seam;
+        let when = K::Time::of(t.clone());
         for &b in slice.arcs_in(chart) {
             let arc = slice.arc(b);
-            let when = K::Time::of(t.clone());
-            if arc.start().t > when || arc.end().t < when {
+            if !slice.alive_at(arc, &when) {
                 continue;
             }
             let Some(h) = slice.height_at(arc, t) else {

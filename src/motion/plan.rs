@@ -230,10 +230,10 @@ fn simulate_with<K: Kernel>(
                 duration: num(&plan.duration),
             };
             let limits = pawl.limits.as_ref().map(|(lo, hi)| (num(lo), num(hi)));
-            let turned = kept[i].take().map(|(slice, free)| {
-                let slice = Rc::new(slice.reversed());
+            let turned = kept[i].take().and_then(|(slice, free)| {
+                let slice = Rc::new(slice.reversed(limits.as_ref())?);
                 let free = free.and_then(|f| f.reversed(&slice)).map(Rc::new);
-                (slice, free)
+                Some((slice, free))
             });
             cost.slices += u64::from(turned.is_none());
             let (slice, known) = turned.unwrap_or_else(|| {

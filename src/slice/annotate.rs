@@ -7,13 +7,11 @@
 use super::free::{Free, FreeEdge, FreeVertex, Touch};
 use super::strip::Owner;
 use super::{ArcId, Configuration, Shape, Slice};
-use crate::contact::Chart;
 use crate::face::{FaceKernel, Found};
 use crate::geometry::index::{Hull, Tree};
 use crate::kernel::{Instant, Kernel};
 use crate::number::{Rat, Scalar};
 use std::cmp::Ordering;
-use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 /// CSR starts from sorted keys.
@@ -26,6 +24,64 @@ fn starts(keys: impl Iterator<Item = u32>, n: usize) -> Vec<u32> {
         out[i + 1] += out[i];
     }
     out
+}
+
+/// What is to be known along whole arcs.
+#[derive(Clone, Default)]
+pub(super) struct Along {
+    known: bool,
+    /// (arc, edge) by arc, then in order of time, overlapping arcs included.
+    pub(super) on: Vec<(ArcId, u32)>,
+    /// Graphs by curve and branch, so that those that lie on one another stand together.
+    graphs: Vec<ArcId>,
+    /// Where in `graphs` those that an arc may lie on begin and end.
+    range: Vec<[u32; 2]>,
+    levels: Vec<ArcId>,
+}
+
+impl Along {
+    fn twins<K: Kernel>(slice: &Slice<K>) -> Along {
+        let arcs = slice.arcs();
+        let (mut graphs, mut levels): (Vec<ArcId>, Vec<ArcId>) = (Vec::new(), Vec::new());
+        for (i, a) in arcs.iter().enumerate().filter(|(_, a)| a.is_barrier()) {
+            match a.shape {
+                Shape::Level => levels.push(i as ArcId),
+                Shape::Wall => {}
+                Shape::Graph { .. } => graphs.push(i as ArcId),
+            }
+        }
+        let key = |i: &ArcId| {
+            let a = &arcs[*i as usize];
+            (a.curve, a.branch, a.chart)
+        };
+        graphs.sort_by_key(key);
+        let mut range = vec![[0; 2]; arcs.len()];
+        let mut from = 0;
+        for same in graphs.chunk_by(|a, b| key(a) == key(b)) {
+            let to = from + same.len() as u32;
+            for &a in same {
+                range[a as usize] = [from, to];
+            }
+            from = to;
+        }
+        Along {
+            known: true,
+            on: Vec::new(),
+            graphs,
+            range,
+            levels,
+        }
+    }
+    /// The arcs among which are all that coincide with one wherever both exist.
+    pub(super) fn beside<K: Kernel>(&self, slice: &Slice<K>, arc: ArcId) -> &[ArcId] {
+        match slice.arc(arc).shape {
+            Shape::Level => &self.levels,
+            _ => {
+                let [from, to] = self.range[arc as usize];
+                &self.graphs[from as usize..to as usize]
+            }
+        }
+    }
 }
 
 /// A boundary that is whole but not annotated.
@@ -41,11 +97,14 @@ pub(super) struct Draft {
 
 impl Draft {
     /// F, found from a configuration. O(|F| log |F|) and O(n) for the arcs that lie on one another.
+    ///
+    /// What is known along the arcs already is taken as it is.
     pub(super) fn annotate<K: Kernel>(
         mut self,
         slice: &Slice<K>,
         start: Configuration,
         found: Found,
+        along: Option<Along>,
     ) -> Free {
         self.mark_rest();
         let timed = |e: &FreeEdge| {
@@ -66,23 +125,6 @@ impl Draft {
             .enumerate()
             .map(|(i, e)| (Hull::boxed(e.bounds), i as u32))
             .collect();
-        let mut twins: HashMap<(u32, i32, Chart), Vec<ArcId>> = HashMap::new();
-        let mut levels = Vec::new();
-        for (i, a) in slice
-            .arcs()
-            .iter()
-            .enumerate()
-            .filter(|(_, a)| a.is_barrier())
-        {
-            match a.shape {
-                Shape::Level => levels.push(i as ArcId),
-                Shape::Wall => {}
-                Shape::Graph { .. } => twins
-                    .entry((a.curve, a.branch, a.chart))
-                    .or_default()
-                    .push(i as ArcId),
-            }
-        }
         let mut free = Free {
             kernel: self.kernel,
             duration: slice.frame.duration.to_rat(),
@@ -96,14 +138,15 @@ impl Draft {
             cycles: self.cycles,
             leaving,
             leaving_starts,
-            on: Vec::new(),
+            along: along.unwrap_or_default(),
             touches: Vec::new(),
             rest_at_end: Vec::new(),
             tree: Tree::new(entries),
-            twins,
-            levels,
         };
-        free.sort_arcs(slice);
+        if !free.along.known {
+            free.along = Along::twins(slice);
+            free.sort_arcs(slice);
+        }
         free.find_touches(slice);
         free
     }
@@ -177,7 +220,7 @@ impl Free {
         });
         drop(k);
         on.dedup();
-        self.on = on;
+        self.along.on = on;
     }
 
     fn find_touches<K: Kernel>(&mut self, slice: &Slice<K>) {

@@ -242,6 +242,6 @@ impl Assembly {
             order,
             cycles,
         };
-        Some(draft.annotate(slice, start, found))
+        Some(draft.annotate(slice, start, found, None))
     }
 }

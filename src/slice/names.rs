@@ -31,17 +31,17 @@ pub(super) enum Name<R> {
 
 /// Supporting lines (normal, offset) numbered so that collinear edges share a number; each when first asked
 /// for, since most edges of a long obstacle are out of reach.
-pub(super) struct Lines<'a, K: Kernel> {
-    rings: Vec<&'a Ring<K::Num>>,
+pub(super) struct Lines<K: Kernel> {
+    rings: Vec<Ring<K::Num>>,
     /// The first edge of each ring, numbered through all of them.
     first: Vec<u32>,
     seen: HashMap<K::Key, u32>,
     of_edge: HashMap<u32, u32>,
 }
 
-impl<'a, K: Kernel> Lines<'a, K> {
-    pub(super) fn new(rings: impl Iterator<Item = &'a Ring<K::Num>>) -> Lines<'a, K> {
-        let rings: Vec<_> = rings.collect();
+impl<K: Kernel> Lines<K> {
+    pub(super) fn new<'a>(rings: impl Iterator<Item = &'a Ring<K::Num>>) -> Lines<K> {
+        let rings: Vec<_> = rings.cloned().collect();
         let mut next = 0;
         let mut first = Vec::with_capacity(rings.len());
         for r in &rings {
@@ -61,7 +61,7 @@ impl<'a, K: Kernel> Lines<'a, K> {
             return n;
         }
         let r = self.first.partition_point(|&f| f <= edge) - 1;
-        let (ring, k) = (self.rings[r], (edge - self.first[r]) as usize);
+        let (ring, k) = (&self.rings[r], (edge - self.first[r]) as usize);
         let (n, on) = (&ring.normals[k], &ring.vertices[k]);
         // Offset first, so that the sign is fixed by the normal alone and orientation stays
         // out of the name.

@@ -1,186 +1,129 @@
 //! A phase run backwards: the same slice and the same F with time turned round.
 //!
-//! A reversed phase moves the hinge back along its path, so at t' = T − t everything touches as it did at t. Patches,
-//! curves and arcs are those of the phase with t replaced by T − t, an exact substitution in
-//! coefficients; no patch is culled again, no root isolated, and F keeps its boundary. What depends on which way
+//! A reversed phase moves the hinge back along its path, so at t' = T − t everything touches as it did at t. Which pairs
+//! of features may touch, and which arcs they have, need not be looked for again: an arc's enclosures are turned
+//! round, and its exact part is cut from the reversed patch when a question asks for it, the k-th arc of its
+//! patch as before, since arcs of a patch follow each other along x. F keeps its boundary. What depends on which way
 //! time runs is made anew: which end of an edge comes first, what leaves a vertex, where F goes on along rest. (The
 //! friction regions belong to the arc and the velocity and are never stored.)
 
-use super::annotate::Draft;
+use super::annotate::{Along, Draft};
 use super::assemble::lie;
-use super::free::{Free, FreeEdge, FreeVertex};
-use super::{Arc, Curve, End, Owner, Point, Shape, Side, Slice};
-use crate::contact::{Chart, Frame, Patch, Trig};
+use super::free::{Free, FreeEdge, FreeVertex, NONE};
+use super::shop::Shop;
+use super::{Arc, ArcId, Owner, Shape, Side, Slice};
+use crate::contact::{Contact, Frame};
 use crate::face::FaceKernel;
-use crate::kernel::{Instant, Kernel, Polynomial};
-use crate::number::{Poly, Rat, Scalar};
+use crate::kernel::Kernel;
+use crate::number::{Interval, Poly, Rat, Scalar};
+use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::rc::Rc;
 
-/// Instants turned round, each handle once, so that shared handles stay shared.
-struct Mirror<K: Kernel> {
-    end: K::Num,
-    /// By the bits of the enclosure.
-    known: HashMap<[u64; 2], Vec<(K::Time, K::Time)>>,
-}
-
-impl<K: Kernel> Mirror<K> {
-    fn time(&mut self, x: &K::Root, t: &K::Time) -> K::Time {
-        let i = t.interval();
-        let list = self
-            .known
-            .entry([i.lo, i.hi].map(f64::to_bits))
-            .or_default();
-        if let Some((_, m)) = list.iter().find(|(o, _)| o.same(t)) {
-            return m.clone();
-        }
-        let mirrored = match t.known() {
-            Some(t) => K::Time::of(self.end.minus(&t)),
-            None => {
-                let (num, den) = t.parts();
-                let (p, q) = turned::<K>(&num, &den, &self.end);
-                K::Time::ratio(x, p, q)
-            }
-        };
-        list.push((t.clone(), mirrored.clone()));
-        mirrored
-    }
-    fn end(&mut self, e: &End<K>) -> End<K> {
-        End {
-            x: e.x.clone(),
-            t: self.time(&e.x, &e.t),
-        }
+fn turned_shape(s: Shape) -> Shape {
+    match s {
+        Shape::Graph { rising } => Shape::Graph { rising: !rising },
+        s => s,
     }
 }
 
-/// end − num/den as (numerator, denominator).
-fn turned<K: Kernel>(num: &K::Poly, den: &K::Poly, end: &K::Num) -> (K::Poly, K::Poly) {
-    let zero = K::Num::zero;
-    let (up, down) = K::Poly::pair(
-        &[end.clone(), zero(), zero()],
-        &[K::Num::one(), zero(), zero()],
-    );
-    (den.times(&up).minus(&num.times(&down)), den.times(&down))
-}
-
-/// f₀ + t·f₁ with t = end − t'.
-fn substituted<R: Scalar>(f: (&Trig<R>, &Trig<R>), end: &R) -> (Trig<R>, Trig<R>) {
-    (f.0.add(&f.1.scale(end)), f.1.neg())
-}
-
-fn patch<R: Scalar>(p: &Patch<R>, end: &R) -> Patch<R> {
-    let (f0, f1) = substituted((&p.f0, &p.f1), end);
-    Patch {
-        f0,
-        f1,
-        location: [0, 1].map(|i| substituted((&p.location[i].0, &p.location[i].1), end)),
-        ..p.clone()
+fn turned_side(s: Side) -> Side {
+    match s {
+        Side::Before => Side::After,
+        Side::After => Side::Before,
+        s => s,
     }
+}
+
+/// Whether one arc is the other turned round, as far as that shows without exact numbers.
+fn matches<K: Kernel>(a: &Arc<K>, turned: &Arc<K>) -> bool {
+    a.contact == turned.contact
+        && a.chart == turned.chart
+        && turned_shape(a.shape) == turned.shape
+        && turned_side(a.side) == turned.side
 }
 
 impl<K: Kernel> Slice<K> {
-    /// The slice of the phase run backwards: what [`Slice::new`] makes of the reversed phase, from this one.
+    /// The slice of the phase run backwards: what [`Slice::new`] makes of the reversed phase, arc by arc with the
+    /// same ids, from this one and the pawl's angular stops. None where an arc that only just touches the
+    /// phase's ends counts on one way and not on the other.
     ///
-    /// Cost: a few operations an arc; crossings are found anew where they are asked for.
-    pub fn reversed(&self) -> Slice<K> {
+    /// Cost: O(1) an arc in doubles; exact numbers where something is asked.
+    pub fn reversed(&self, limits: Option<&(K::Num, K::Num)>) -> Option<Slice<K>> {
         let end = &self.frame.duration;
-        let mut mirror = Mirror {
-            end: end.clone(),
-            known: HashMap::new(),
+        let frame = Frame {
+            p0: &self.frame.p0 + &self.frame.v.scale(end),
+            v: -&self.frame.v,
+            duration: end.clone(),
         };
-        let patches: Vec<Patch<K::Num>> = self.patches.iter().map(|p| patch(p, end)).collect();
-        // A curve's coefficients by any patch on it, in their normal form, and the sign that it takes.
-        let mut by: Vec<Option<u32>> = vec![None; self.curves.len()];
-        for (arc, patch) in self.arcs.iter().zip(&self.patch_of) {
-            by[arc.curve as usize] = by[arc.curve as usize].or(*patch);
-        }
-        let mut flips = vec![1; self.curves.len()];
-        let mut curves = Vec::with_capacity(self.curves.len());
-        for (i, c) in self.curves.iter().enumerate() {
-            let Some(p) = by[i].map(|p| p as usize) else {
-                curves.push(c.clone());
+        let shop = Rc::new(self.shop.reversed(frame.clone()));
+        let end = Scalar::interval(end);
+        let mut arcs: Vec<Arc<K>> = Vec::with_capacity(self.arcs().len());
+        let mut at = 0;
+        while let Some(arc) = self.arcs().get(at) {
+            if let Some((_, patch, k)) = &arc.source {
+                arcs.push(seen(arc, end, (shop.clone(), *patch, *k)));
+                at += 1;
                 continue;
-            };
-            let normal = |p: &Patch<K::Num>| {
-                let all =
-                    p.f0.form(Chart::Rest)
-                        .into_iter()
-                        .chain(p.f1.form(Chart::Rest));
-                K::primitive(&all.collect::<Vec<_>>())
-            };
-            let (Some((_, before)), Some((all, after))) =
-                (normal(&self.patches[p]), normal(&patches[p]))
-            else {
-                curves.push(c.clone());
+            }
+            if let Contact::Limit(which) = arc.contact {
+                let (lo, hi) = limits?;
+                arcs.push(shop.limit(if which == 0 { lo } else { hi }, which));
+                at += 1;
                 continue;
-            };
-            flips[i] = before * after;
-            let reduced = Chart::BOTH.map(|chart| {
-                let (rp, rq) = c.reduced(chart);
-                // t = −rp/rq, so t' = end + rp/rq.
-                let (num, den) = turned::<K>(&rp.negated(), rq, end);
-                (num.negated(), den)
-            });
-            let [(rp0, rq0), (rp1, rq1)] = reduced;
-            curves.push(Curve {
-                p: std::array::from_fn(|i| all[i].clone()),
-                q: std::array::from_fn(|i| all[i + 3].clone()),
-                rp: [rp0, rp1],
-                rq: [rq0, rq1],
-            });
+            }
+            let patch = self.patch_id(at as ArcId)?;
+            let to = (at..self.arcs().len())
+                .find(|&i| self.patch_id(i as ArcId) != Some(patch))
+                .unwrap_or(self.arcs().len());
+            worked_out(&self.arcs()[at..to], &shop.within(patch, end.hi), &mut arcs)?;
+            at = to;
         }
-        let arcs = self
-            .arcs
-            .iter()
-            .map(|a| {
-                let (lo, hi) = (mirror.end(&a.lo), mirror.end(&a.hi));
-                let (lo, hi) = match a.shape {
-                    Shape::Level => (hi, lo),
-                    _ => (lo, hi),
-                };
-                Arc {
-                    branch: a.branch * flips[a.curve as usize],
-                    shape: match a.shape {
-                        Shape::Graph { rising } => Shape::Graph { rising: !rising },
-                        s => s,
-                    },
-                    side: match a.side {
-                        Side::Before => Side::After,
-                        Side::After => Side::Before,
-                        s => s,
-                    },
-                    lo,
-                    hi,
-                    ..a.clone()
-                }
-                .with_spans()
-            })
-            .collect();
-        let named = self
-            .named
-            .iter()
-            .map(|points| {
-                let turn = |p: &Point<K>| Point {
-                    t: mirror.time(&p.x, &p.t),
-                    ..p.clone()
-                };
-                points.iter().map(turn).collect()
-            })
-            .collect();
-        Slice {
-            frame: Frame {
-                p0: &self.frame.p0 + &self.frame.v.scale(end),
-                v: -&self.frame.v,
-                duration: end.clone(),
-            },
-            curves,
-            arcs,
-            by_chart: self.by_chart.clone(),
-            patch_of: self.patch_of.clone(),
-            patches,
-            named,
-            crossings: Default::default(),
-        }
+        Some(self.with_arcs(frame, arcs, shop))
     }
+}
+
+/// An arc that doubles see, turned round.
+fn seen<K: Kernel>(arc: &Arc<K>, end: Interval, source: (Rc<Shop<K>>, u32, u32)) -> Arc<K> {
+    Arc {
+        shape: turned_shape(arc.shape),
+        side: turned_side(arc.side),
+        t_span: end - arc.t_span,
+        ends: arc.ends.map(|(x, t)| (x, end - t)),
+        at_rest: end - arc.at_rest,
+        exact: OnceCell::new(),
+        source: Some(source),
+        ..arc.clone()
+    }
+}
+
+/// The arcs of a patch that was worked out at once, worked out anew: in the order of those that they turn round, which
+/// is the other way about along a level.
+fn worked_out<K: Kernel>(old: &[Arc<K>], new: &[Arc<K>], out: &mut Vec<Arc<K>>) -> Option<()> {
+    if old.len() != new.len() {
+        return None;
+    }
+    let mut from = 0;
+    while from < old.len() {
+        let mut to = from + 1;
+        while to < old.len()
+            && old[from].shape == Shape::Level
+            && old[to].shape == Shape::Level
+            && old[from].chart == old[to].chart
+            && old[from].lo.x == old[to].lo.x
+        {
+            to += 1;
+        }
+        for (i, a) in old[from..to].iter().enumerate() {
+            let turned = &new[to - 1 - i];
+            if !matches(a, turned) {
+                return None;
+            }
+            out.push(turned.clone());
+        }
+        from = to;
+    }
+    Some(())
 }
 
 /// The face kernel's curve T − P/Q.
@@ -206,7 +149,7 @@ impl Free {
     /// F of the phase run backwards, on the slice that [`Slice::reversed`] makes: nothing is traced again.
     /// None only where a curve cannot be turned, which certified kernels never make.
     ///
-    /// Cost: O(|F| log |F|) for the annotation.
+    /// Cost: O(|F| log |F|) for the annotation, and a copy of what is known of overlapping arcs.
     pub fn reversed<K: Kernel>(&self, slice: &Slice<K>) -> Option<Free> {
         let end = &self.duration;
         let mut known = HashMap::new();
@@ -230,17 +173,13 @@ impl Free {
                 o => o,
             };
             let lie = lie(slice, owner);
-            let level = e.shape == Shape::Level;
-            let along_t = !matches!(e.shape, Shape::Graph { .. } | Shape::Level);
-            let (low, high) = if level {
-                (e.high, e.low)
-            } else {
-                (e.low, e.high)
+            let (low, high) = match e.shape {
+                Shape::Level => (e.high, e.low),
+                _ => (e.low, e.high),
             };
-            let (above, below) = if along_t {
-                (e.below, e.above)
-            } else {
-                (e.above, e.below)
+            let (above, below) = match e.shape {
+                Shape::Wall => (e.below, e.above),
+                _ => (e.above, e.below),
             };
             let t = [low, high].map(|v| vertices[v as usize].t);
             edges.push(FreeEdge {
@@ -258,7 +197,7 @@ impl Free {
                 shape: lie.shape,
                 chart: lie.chart,
                 curve: match e.curve {
-                    super::free::NONE => super::free::NONE,
+                    NONE => NONE,
                     c => turned_curve(&mut k, &mut known, c, end)?,
                 },
                 left_is_above: lie.left_is_above,
@@ -275,6 +214,14 @@ impl Free {
                 if level { h } else { h ^ 1 }
             }));
         }
+        let mut on = Vec::with_capacity(self.along.on.len());
+        for same in self.along.on.chunk_by(|a, b| a.0 == b.0) {
+            on.extend(same.iter().rev());
+        }
+        let along = Along {
+            on,
+            ..self.along.clone()
+        };
         let mut start = self.start.clone();
         start.t = end - &start.t;
         let draft = Draft {
@@ -286,6 +233,6 @@ impl Free {
             order,
             cycles: self.cycles.clone(),
         };
-        Some(draft.annotate(slice, start, self.found))
+        Some(draft.annotate(slice, start, self.found, Some(along)))
     }
 }
