@@ -72,6 +72,14 @@ impl Along {
             levels,
         }
     }
+    /// The same with time turned round.
+    pub(super) fn reversed(&self) -> Along {
+        let mut along = self.clone();
+        for same in along.on.chunk_by_mut(|a, b| a.0 == b.0) {
+            same.reverse();
+        }
+        along
+    }
     /// The arcs among which are all that coincide with one wherever both exist.
     pub(super) fn beside<K: Kernel>(&self, slice: &Slice<K>, arc: ArcId) -> &[ArcId] {
         match slice.arc(arc).shape {

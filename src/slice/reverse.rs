@@ -7,7 +7,7 @@
 //! time runs is made anew: which end of an edge comes first, what leaves a vertex, where F goes on along rest. (The
 //! friction regions belong to the arc and the velocity and are never stored.)
 
-use super::annotate::{Along, Draft};
+use super::annotate::Draft;
 use super::assemble::lie;
 use super::free::{Free, FreeEdge, FreeVertex, NONE};
 use super::shop::Shop;
@@ -214,14 +214,7 @@ impl Free {
                 if level { h } else { h ^ 1 }
             }));
         }
-        let mut on = Vec::with_capacity(self.along.on.len());
-        for same in self.along.on.chunk_by(|a, b| a.0 == b.0) {
-            on.extend(same.iter().rev());
-        }
-        let along = Along {
-            on,
-            ..self.along.clone()
-        };
+        let along = self.along.reversed();
         let mut start = self.start.clone();
         start.t = end - &start.t;
         let draft = Draft {
