@@ -196,7 +196,8 @@ impl<K: Kernel> Runner<'_, K> {
             &Place::new(z.clone(), start.half_turn),
         );
         let next = self.begin(start, &z, &inc, touching);
-        if self.set.method.sweeps(self.slice.arcs().len()) && K::ENCLOSES {
+        let known = self.set.method == Method::Auto && self.set.known.is_some();
+        if (known || self.set.method.sweeps(self.slice.arcs().len())) && K::ENCLOSES {
             let seed = self.seed(&next, start, &z, &inc);
             self.look_from(seed);
         }

@@ -1,29 +1,27 @@
-//! From the face of the strip to F: the cut is taken out, and the boundary annotated (DP §9.4).
+//! From the face of the strip to a boundary on the cylinder: the cut is taken out.
 //!
-//! An edge that ends on the cut is followed by the one that begins on its other side. Then, for each vertex, all
-//! arcs through it and the edges that leave it towards later times; for each arc its edges in order of time; and
-//! where the boundary touches rest.
+//! An edge that ends on the cut is followed by the one that begins on its other side; vertices on the cut are
+//! united with their partners.
 
-use super::free::{Free, FreeEdge, FreeVertex, NONE, Touch};
+use super::annotate::Draft;
+use super::free::{Free, FreeEdge, FreeVertex, NONE};
 use super::strip::{Owner, Strip};
 use super::{ArcId, Configuration, Shape, Slice};
 use crate::contact::Chart;
-use crate::face::{Boundary, FaceKernel, Found};
-use crate::geometry::index::{Hull, Tree};
-use crate::kernel::{Instant, Kernel};
-use crate::number::{Rat, Scalar};
-use std::cmp::Ordering;
+use crate::face::{Boundary, Found};
+use crate::kernel::Kernel;
+use crate::number::Rat;
 use std::collections::HashMap;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// How a boundary edge of the strip lies there.
-struct Lie {
-    shape: Shape,
-    chart: Chart,
-    left_is_above: bool,
+pub(super) struct Lie {
+    pub(super) shape: Shape,
+    pub(super) chart: Chart,
+    pub(super) left_is_above: bool,
 }
 
-fn lie<K: Kernel>(slice: &Slice<K>, owner: Owner) -> Lie {
+pub(super) fn lie<K: Kernel>(slice: &Slice<K>, owner: Owner) -> Lie {
     let (shape, chart) = match owner {
         Owner::Arc(id) => (slice.arc(id).shape, slice.arc(id).chart),
         Owner::Cut => (Shape::Level, Chart::Rest),
@@ -36,18 +34,6 @@ fn lie<K: Kernel>(slice: &Slice<K>, owner: Owner) -> Lie {
         chart,
         left_is_above,
     }
-}
-
-/// CSR starts from sorted keys.
-fn starts(keys: impl Iterator<Item = u32>, n: usize) -> Vec<u32> {
-    let mut out = vec![0u32; n + 1];
-    for k in keys {
-        out[k as usize + 1] += 1;
-    }
-    for i in 0..n {
-        out[i + 1] += out[i];
-    }
-    out
 }
 
 /// F while it is put together.
@@ -232,7 +218,6 @@ impl Assembly {
         found: Found,
     ) -> Option<Free> {
         let (order, cycles) = self.cycles()?;
-        self.mark_rest(&order, &cycles);
         // Vertices that only the cut had are no longer any.
         let mut number = vec![NONE; self.vertices.len()];
         let (mut vertices, mut links, mut link_starts) = (Vec::new(), Vec::new(), vec![0]);
@@ -248,203 +233,15 @@ impl Assembly {
                 *v = *n;
             }
         }
-        let timed = |e: &FreeEdge| {
-            matches!(e.shape, Shape::Graph { .. } | Shape::Level) && e.owner != Owner::Cut
-        };
-        let edges = self.edges;
-        let mut leaving: Vec<u32> = (0..edges.len() as u32)
-            .filter(|&e| timed(&edges[e as usize]))
-            .collect();
-        leaving.sort_by_key(|&e| edges[e as usize].first());
-        let leaving_starts = starts(
-            leaving.iter().map(|&e| edges[e as usize].first()),
-            vertices.len(),
-        );
-        let entries = edges
-            .iter()
-            .enumerate()
-            .map(|(i, e)| (Hull::boxed(e.bounds), i as u32))
-            .collect();
-        let mut twins: HashMap<(u32, i32, Chart), Vec<ArcId>> = HashMap::new();
-        let mut levels = Vec::new();
-        for (i, a) in slice
-            .arcs()
-            .iter()
-            .enumerate()
-            .filter(|(_, a)| a.is_barrier())
-        {
-            match a.shape {
-                Shape::Level => levels.push(i as ArcId),
-                Shape::Wall => {}
-                Shape::Graph { .. } => twins
-                    .entry((a.curve, a.branch, a.chart))
-                    .or_default()
-                    .push(i as ArcId),
-            }
-        }
-        let mut free = Free {
-            kernel: Mutex::new(self.b.kernel),
-            duration: slice.frame.duration.to_rat(),
-            start,
-            found,
+        let draft = Draft {
+            kernel: Arc::new(Mutex::new(self.b.kernel)),
             vertices,
             links,
             link_starts,
-            edges,
+            edges: self.edges,
             order,
             cycles,
-            leaving,
-            leaving_starts,
-            on: Vec::new(),
-            touches: Vec::new(),
-            rest_at_end: Vec::new(),
-            tree: Tree::new(entries),
-            twins,
-            levels,
         };
-        free.sort_arcs(slice);
-        free.find_touches(slice);
-        Some(free)
-    }
-
-    /// For vertices at rest, whether F holds what comes right after them at rest: whether one of the sectors
-    /// of F there holds the direction of time.
-    fn mark_rest(&mut self, order: &[u32], cycles: &[u32]) {
-        // Directions counter-clockwise from straight down: t upwards, x to the right.
-        let class = |e: &FreeEdge, forward: bool| match (e.shape == Shape::Level, forward) {
-            (true, false) => 0,
-            (false, true) => 1,
-            (true, true) => 2,
-            (false, false) => 3,
-        };
-        for w in cycles.windows(2) {
-            let cycle = &order[w[0] as usize..w[1] as usize];
-            for (i, &h) in cycle.iter().enumerate() {
-                let n = cycle[(i + 1) % cycle.len()];
-                let (come, go) = (self.edges[h as usize / 2], self.edges[n as usize / 2]);
-                let v = if h % 2 == 0 { come.high } else { come.low };
-                if self.vertices[v as usize].side != 0 {
-                    continue;
-                }
-                let (a, b) = (class(&go, n.is_multiple_of(2)), class(&come, h % 2 == 1));
-                let x = self.vertices[v as usize].num;
-                let k = &mut self.b.kernel;
-                let holds = match a.cmp(&b) {
-                    _ if n == h ^ 1 => a != 2,
-                    Ordering::Less => a < 2 && b > 2,
-                    Ordering::Greater => a < 2 || b > 2,
-                    Ordering::Equal if a == 1 => {
-                        !k.cmp_beside(go.curve, come.curve, x, true).is_lt()
-                    }
-                    Ordering::Equal => !k.cmp_beside(go.curve, come.curve, x, false).is_gt(),
-                };
-                self.vertices[v as usize].rest_open |= holds;
-            }
-        }
-    }
-}
-
-impl Free {
-    /// The edges of each arc, in order of time.
-    fn sort_arcs<K: Kernel>(&mut self, slice: &Slice<K>) {
-        let mut on = Vec::with_capacity(self.edges.len());
-        for (i, e) in self.edges.iter().enumerate() {
-            let Owner::Arc(a) = e.owner else { continue };
-            on.push((a, i as u32));
-            for &b in self.arcs_at(e.low) {
-                if b != a && slice.coincide(a, b) && self.arcs_at(e.high).binary_search(&b).is_ok()
-                {
-                    on.push((b, i as u32));
-                }
-            }
-        }
-        let mut k = self.kernel.lock().unwrap_or_else(|e| e.into_inner());
-        on.sort_by(|p, q| {
-            p.0.cmp(&q.0).then_with(|| {
-                let (e, f) = (&self.edges[p.1 as usize], &self.edges[q.1 as usize]);
-                let by_x = k.cmp(e.ends[0], f.ends[0]);
-                match e.shape {
-                    Shape::Graph { rising: false } => by_x.reverse(),
-                    Shape::Level => by_x.then_with(|| {
-                        let [v, w] = [e, f].map(|e| self.vertices[e.low as usize]);
-                        k.cmp_at(v.curve, w.curve, v.num)
-                    }),
-                    _ => by_x,
-                }
-            })
-        });
-        drop(k);
-        on.dedup();
-        self.on = on;
-    }
-
-    fn find_touches<K: Kernel>(&mut self, slice: &Slice<K>) {
-        let zero = Rat::zero();
-        let mut found: Vec<(Rat, u32, Option<u32>)> = Vec::new();
-        let mut at_end = Vec::new();
-        {
-            let mut k = self.kernel();
-            let rest = k.rational(&zero);
-            let value = |k: &FaceKernel, curve: u32| {
-                let (p, q) = k.polys(curve);
-                p.eval(&zero) / q.eval(&zero)
-            };
-            for (i, e) in self.edges.iter().enumerate() {
-                // By the edge's own ends: a vertex on the cut lies on both of the strip's borders.
-                if e.bounds[0] > 0.0
-                    || e.bounds[1] < 0.0
-                    || k.cmp(e.ends[0], rest).is_gt()
-                    || k.cmp(e.ends[1], rest).is_lt()
-                {
-                    continue;
-                }
-                let i = i as u32;
-                match (e.owner, e.shape) {
-                    (Owner::End, _) => {
-                        at_end.extend_from_slice(self.arcs_at(e.low));
-                        at_end.extend_from_slice(self.arcs_at(e.high));
-                        for v in [e.low, e.high] {
-                            if self.vertices[v as usize].side == 0 {
-                                found.push((self.duration.clone(), i, Some(v)));
-                            }
-                        }
-                    }
-                    (Owner::Arc(a), Shape::Level) => {
-                        for v in [e.low, e.high] {
-                            found.push((value(&k, self.vertices[v as usize].curve), i, Some(v)));
-                        }
-                        if let Some(t) = slice.arc(a).lo.t.decided() {
-                            found.push((t.to_rat(), i, None));
-                        }
-                    }
-                    (Owner::Arc(_), _) => {
-                        let v = [e.low, e.high]
-                            .into_iter()
-                            .find(|&v| self.vertices[v as usize].side == 0);
-                        found.push((value(&k, e.curve), i, v));
-                    }
-                    _ => {}
-                }
-            }
-        }
-        at_end.sort_unstable();
-        at_end.dedup();
-        self.rest_at_end = at_end;
-        found.sort_by(|a, b| a.0.cmp(&b.0));
-        let mut touches: Vec<Touch> = Vec::new();
-        for (t, e, v) in found {
-            match touches.last_mut() {
-                Some(l) if l.t == t => {
-                    l.edges.push(e);
-                    l.vertex = l.vertex.or(v);
-                }
-                _ => touches.push(Touch {
-                    t,
-                    edges: vec![e],
-                    vertex: v,
-                }),
-            }
-        }
-        self.touches = touches;
+        Some(draft.annotate(slice, start, found, None))
     }
 }

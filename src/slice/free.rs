@@ -11,6 +11,7 @@
 //! the boundary touches rest. Vertical tangencies are ends of arcs from the beginning, and where
 //! friction changes between sticking and sliding is told by the arc alone (`motion::friction`).
 
+use super::annotate::Along;
 use super::assemble::Assembly;
 use super::strip::{Owner, Strip};
 use super::{ArcId, Shape, Slice, Time};
@@ -20,8 +21,7 @@ use crate::geometry::index::{Hull, Tree};
 use crate::kernel::Kernel;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
-use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -135,7 +135,7 @@ pub struct Interval {
 
 /// F, see the module.
 pub struct Free {
-    pub(super) kernel: Mutex<FaceKernel>,
+    pub(super) kernel: Arc<Mutex<FaceKernel>>,
     pub(super) duration: Rat,
     pub(super) start: Configuration,
     pub(super) found: Found,
@@ -148,14 +148,10 @@ pub struct Free {
     pub(super) cycles: Vec<u32>,
     pub(super) leaving: Vec<u32>,
     pub(super) leaving_starts: Vec<u32>,
-    /// (arc, edge) by arc, then in order of time, overlapping arcs included.
-    pub(super) on: Vec<(ArcId, u32)>,
+    pub(super) along: Along,
     pub(super) touches: Vec<Touch>,
     pub(super) rest_at_end: Vec<ArcId>,
     pub(super) tree: Tree,
-    /// Graphs that lie on one curve and branch, where there are several.
-    pub(super) twins: HashMap<(u32, i32, Chart), Vec<ArcId>>,
-    pub(super) levels: Vec<ArcId>,
 }
 
 impl std::fmt::Debug for Free {
@@ -218,6 +214,12 @@ impl Free {
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 
+    /// F with the names of the arcs through its vertices lost, to see that a damaged F is found out.
+    #[cfg(test)]
+    pub(crate) fn forget_links(&mut self) {
+        self.links.clear();
+        self.link_starts.fill(0);
+    }
     pub(super) fn kernel(&self) -> MutexGuard<'_, FaceKernel> {
         self.kernel.lock().unwrap_or_else(|e| e.into_inner())
     }
@@ -267,9 +269,9 @@ impl Free {
     }
     /// The edges that an arc lies on, in order of time.
     pub fn edges_of(&self, arc: ArcId) -> impl DoubleEndedIterator<Item = u32> + '_ {
-        let from = self.on.partition_point(|o| o.0 < arc);
-        let to = self.on.partition_point(|o| o.0 <= arc);
-        self.on[from..to].iter().map(|o| o.1)
+        let from = self.along.on.partition_point(|o| o.0 < arc);
+        let to = self.along.on.partition_point(|o| o.0 <= arc);
+        self.along.on[from..to].iter().map(|o| o.1)
     }
     /// Where its boundary touches rest, in order of time.
     pub fn touches(&self) -> &[Touch] {
@@ -289,20 +291,17 @@ impl Free {
     }
     /// The arcs among which are all that coincide with one wherever both exist.
     pub fn twins<K: Kernel>(&self, slice: &Slice<K>, arc: ArcId) -> &[ArcId] {
-        let a = slice.arc(arc);
-        match a.shape {
-            Shape::Level => &self.levels,
-            _ => self
-                .twins
-                .get(&(a.curve, a.branch, a.chart))
-                .map_or(&[], Vec::as_slice),
-        }
+        self.along.beside(slice, arc)
     }
     /// The chart position and the time of a vertex.
     pub fn place(&self, v: u32) -> (Chart, Algebraic, Time) {
         let v = &self.vertices[v as usize];
         let mut k = self.kernel();
         let t = time_of(&mut k, v.num, v.curve);
+        if v.cut {
+            // It lies on both sides of the strip: by the lower one.
+            return (Chart::Rest, Algebraic::from(Rat::from(-1)), t);
+        }
         let x = k.exact(v.num).clone();
         let one = Rat::one();
         if x.cmp_rat(&one).is_le() {

@@ -11,6 +11,7 @@
 //! Algorithms to the right of this module see no coordinates: they ask the [`Slice`] where two
 //! arcs cross, which of two times is earlier, which of two arcs is higher just after a time.
 
+mod annotate;
 mod arc;
 mod assemble;
 mod build;
@@ -18,6 +19,7 @@ mod free;
 mod names;
 mod predicates;
 mod query;
+mod reverse;
 mod scout;
 mod shop;
 mod strip;

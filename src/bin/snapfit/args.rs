@@ -284,6 +284,8 @@ pub(crate) enum Name {
     Structure,
     /// The result of `simulate`
     Result,
+    /// The result of `slice`
+    Slice,
     /// The result of `classify`
     Classify,
     /// The result of `forces`

@@ -90,6 +90,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
                 Name::Scene => scene::scene_schema(),
                 Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
+                Name::Slice => snapfit::report::slice::slice_schema(),
                 Name::Classify => analysis::classify_schema(),
                 Name::Forces => analysis::forces_schema(),
             };
