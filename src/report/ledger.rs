@@ -50,10 +50,12 @@ pub struct PhaseCostDocument {
     pub swept: u64,
     /// Half-edges of the free components that were made.
     pub half_edges: u64,
-    /// Seconds to build the slices.
-    pub build_seconds: f64,
-    /// Seconds to follow the motion.
-    pub run_seconds: f64,
+    /// Seconds to build the slices; absent where times are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub build_seconds: Option<f64>,
+    /// Seconds to follow the motion; absent where times are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run_seconds: Option<f64>,
 }
 
 impl LedgerDocument {
@@ -77,8 +79,8 @@ impl LedgerDocument {
                     arcs: p.arcs,
                     swept: p.swept,
                     half_edges: p.half_edges,
-                    build_seconds: p.build,
-                    run_seconds: p.run,
+                    build_seconds: Some(p.build),
+                    run_seconds: Some(p.run),
                 })
                 .collect(),
         }
@@ -86,6 +88,14 @@ impl LedgerDocument {
 }
 
 impl ResultDocument {
+    /// Leaves the seconds out, which differ from run to run: what remains is the same, to the
+    /// byte, wherever and as often as the scene is run.
+    pub fn without_times(&mut self) {
+        for p in &mut self.ledger.phases {
+            p.build_seconds = None;
+            p.run_seconds = None;
+        }
+    }
     /// What a result of the double kernel shows: doubles, nowhere an exact number.
     pub(super) fn in_doubles(&mut self) {
         let plain = |n: &mut Num| n.exact = None;
