@@ -263,3 +263,87 @@ fn render_writes_one_picture() {
     assert_eq!(stdout(&snapfit(&["render", PINS, "--svg"])), file);
     assert!(file.starts_with("<svg "));
 }
+
+/// Paths that cannot be written are told before any work, in words.
+#[test]
+fn outputs_are_looked_at_first() {
+    let dir = folder("outputs");
+    let within = dir.join("absent").join("x.json");
+    for (path, says) in [
+        (dir.to_str().unwrap(), "this is a directory"),
+        (within.to_str().unwrap(), "there is no directory"),
+    ] {
+        for verb in [
+            vec!["simulate", PINS, "--out", path],
+            vec!["forces", PINS, "--svg", path],
+            vec!["classify", PINS, "--svg", path],
+            vec!["classify", PINS, "--escape", path],
+            vec!["render", PINS, "--svg", path],
+        ] {
+            let output = snapfit(&verb);
+            assert_eq!(output.status.code(), Some(2), "{verb:?}");
+            assert!(
+                stderr(&output).contains(says),
+                "{verb:?}: {}",
+                stderr(&output)
+            );
+            assert!(output.stdout.is_empty(), "{verb:?}");
+        }
+    }
+    let output = snapfit(&["simulate", dir.to_str().unwrap()]);
+    assert!(stderr(&output).contains("this is a directory"));
+}
+
+/// A name of --set that leads nowhere is answered with the one that was meant.
+#[test]
+fn overrides_suggest_what_was_meant() {
+    let text = fs::read_to_string(PINS).unwrap();
+    let name = text
+        .split("[[pawl]]")
+        .nth(1)
+        .and_then(|p| p.split("name = \"").nth(1))
+        .and_then(|p| p.split('"').next())
+        .unwrap();
+    for (set, meant) in [
+        (format!("pawl.{name}x.stiffness=2"), name),
+        (format!("pawl.{name}.stifness=2"), "stiffness"),
+        ("scen.friction=1".to_owned(), "scene"),
+    ] {
+        let output = snapfit(&["simulate", PINS, "--set", &set]);
+        assert_eq!(output.status.code(), Some(2), "{set}");
+        let said = stderr(&output);
+        assert!(said.contains(&format!("did you mean `{meant}`?")), "{said}");
+    }
+}
+
+/// A plan that a limit of time stops leaves the verdict and the forces undecided.
+#[test]
+fn verdicts_and_forces_say_when_the_time_is_up() {
+    for verb in ["classify", "forces"] {
+        let output = snapfit(&[verb, PINS, "--time-limit", "0"]);
+        assert_eq!(output.status.code(), Some(3), "{verb}");
+        let _: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    }
+}
+
+/// Without its seconds a result is the same every time.
+#[test]
+fn results_without_times_are_the_same_bytes() {
+    let run = || snapfit(&["simulate", PINS, "--no-times"]).stdout;
+    assert_eq!(run(), run());
+    let text = String::from_utf8(run()).unwrap();
+    assert!(!text.contains("seconds"));
+    assert!(stdout(&snapfit(&["simulate", PINS])).contains("run_seconds"));
+}
+
+/// The reference arithmetic finds the same class and the same forces.
+#[test]
+fn the_reference_gives_the_same_verdicts_and_forces() {
+    for name in ["examples/handbook-vertex.toml", "examples/bayer-hook.toml"] {
+        let file = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
+        for verb in ["classify", "forces"] {
+            let by = |how: &str| snapfit(&[verb, &file, "--arithmetic", how]).stdout;
+            assert!(by("exact") == by("filtered"), "{name} {verb}");
+        }
+    }
+}

@@ -70,6 +70,9 @@ pub(crate) struct Simulate {
     pub(crate) common: Common,
     #[command(flatten)]
     pub(crate) engine: Engine,
+    /// Leave the ledger's seconds out: two results of one scene are then the same to the byte
+    #[arg(long)]
+    pub(crate) no_times: bool,
     /// What to print [default: summary on a terminal, else json]
     #[arg(long, value_enum)]
     pub(crate) format: Option<Format>,
@@ -81,8 +84,9 @@ pub(crate) struct Classify {
     pub(crate) common: Common,
     #[command(flatten)]
     pub(crate) engine: Engine,
-    /// Exit with status 4 unless the class is this one: none, force, friction or kinematic; with
-    /// total- before it, unless it is total too
+    /// For use in CI: exit with status 4 unless the class is this one: none, force, friction or
+    /// kinematic, or total-friction and so on, which asks that it hold in every direction too (see
+    /// classify.total in the scene). With --svg the picture shows what was found instead
     #[arg(long, value_name = "CLASS")]
     pub(crate) expect: Option<String>,
     /// Draw the motion that decides (the escape, where there is one) and, where every direction is

@@ -103,7 +103,10 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
 
 fn run_simulate(args: &Simulate) -> Result<u8, Failure> {
     let file = read(&args.common)?;
-    let (trajectory, document) = simulated(&file, &args.common, &args.engine)?;
+    let (trajectory, mut document) = simulated(&file, &args.common, &args.engine)?;
+    if args.no_times {
+        document.without_times();
+    }
     let text = match format_of(args.format, &args.common) {
         Format::Json => document.to_text().map_err(|e| e.to_string())?,
         Format::Summary => summary::summary(&document, style()),
@@ -143,7 +146,7 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
         }
         (None, _) => return Err("say what to draw: --svg [PATH]".to_owned().into()),
     };
-    output::spare_input(&args.common.file, to)?;
+    output::prepare(&args.common.file, to)?;
     let (name, bytes) = read_bytes(&args.common)?;
     if snapfit::flex::is_structure(&name, &bytes) {
         return flex_render::run_render(args, &name, &bytes, to);
@@ -165,7 +168,7 @@ fn read(common: &Common) -> Result<SceneFile, Failure> {
 
 /// The bytes of the file that is asked for, and its name for messages.
 fn read_bytes(common: &Common) -> Result<(String, Vec<u8>), Failure> {
-    output::spare_input(&common.file, common.out.as_deref())?;
+    output::prepare(&common.file, common.out.as_deref())?;
     let mut bytes = Vec::new();
     let (name, done) = if common.file == Path::new("-") {
         (
@@ -176,6 +179,9 @@ fn read_bytes(common: &Common) -> Result<(String, Vec<u8>), Failure> {
         let name = common.file.display().to_string();
         (name, std::fs::read(&common.file).map(|b| bytes = b))
     };
+    if common.file.is_dir() {
+        return Err(format!("{name}: this is a directory; give a file").into());
+    }
     done.map_err(|e| format!("{name}: {e}"))?;
     Ok((name, bytes))
 }

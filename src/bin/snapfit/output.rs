@@ -47,6 +47,29 @@ pub(crate) fn spare_input(input: &Path, out: Option<&Path>) -> Result<(), String
     }
 }
 
+/// Refuses an output path that cannot be written to, before any work is done for it.
+pub(crate) fn prepare(input: &Path, out: Option<&Path>) -> Result<(), String> {
+    spare_input(input, out)?;
+    let Some(path) = out.filter(|p| *p != Path::new("-")) else {
+        return Ok(());
+    };
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(format!(
+            "{shown}: this is a directory; give the name of a file in it"
+        ));
+    }
+    let within = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match within {
+        Some(dir) if !dir.exists() => Err(format!(
+            "{shown}: there is no directory {}; make it first",
+            dir.display()
+        )),
+        Some(dir) if !dir.is_dir() => Err(format!("{shown}: {} is not a directory", dir.display())),
+        _ => Ok(()),
+    }
+}
+
 /// Writes beside the file, then renames over it.
 fn replace(path: &Path, text: &str) -> io::Result<()> {
     // Through a symbolic link, so that the link stays one.

@@ -71,9 +71,14 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
     .map_err(|e| super::misplanned(file, &e))?;
     let found = found.ok_or_else(|| {
         format!(
-            "--phase {}: the plan ran through {} phases",
+            "--phase {}: the plan ran through {} phase{}, counted from 0",
             which.phase,
-            trajectory.phases.len()
+            trajectory.phases.len(),
+            if trajectory.phases.len() == 1 {
+                ""
+            } else {
+                "s"
+            }
         )
     })?;
     Ok((found, trajectory))
