@@ -10,6 +10,7 @@
 pub mod bound;
 mod cells;
 pub mod classify;
+mod climb;
 pub mod critical;
 pub mod document;
 pub mod draw;
@@ -22,6 +23,8 @@ mod jet;
 mod load;
 pub mod peak;
 mod qpoly;
+mod rough;
+mod slope;
 pub mod stretch;
 pub mod summary;
 pub mod total;

@@ -9,8 +9,8 @@
 //! If all N ≡ D·X nearest to zero are so small that the kernel's equations hold as integers below
 //! qᴷ, they hold. Signs come from the leading digits, zeros from the residues.
 //!
-//! Every step is plain 64-bit arithmetic modulo a 31-bit prime fixed at compile time. A bad order,
-//! place or denominator can only lead to rejection.
+//! Every step is plain arithmetic in machine words modulo a 31-bit prime fixed at compile time. A
+//! bad order, place or denominator can only lead to rejection.
 
 use super::lp::{Rejection, lcm, reject};
 use crate::lp::{Model, Place};
@@ -30,6 +30,8 @@ const SECOND: u64 = 2_147_483_629;
 const NONE: u32 = u32::MAX;
 /// Bits of a digit, rounded down.
 const DIGIT: u64 = 30;
+/// Bits of the largest row or column sum of sizes: with a digit more it must fit an `i128`.
+const NORM: u64 = 92;
 
 /// The exact objective at the basis, once it is shown to be optimal.
 pub(super) fn objective(model: &Model, evidence: &Evidence<'_>) -> Result<Rat, Rejection> {
@@ -56,7 +58,7 @@ fn no<T>(why: &str) -> Result<T, Trouble> {
     Err(Trouble::No(Rejection(why.to_string())))
 }
 
-type Line = Vec<(u32, i64)>;
+type Line = Vec<(u32, i128)>;
 
 /// The scaled program and the kernel's shape.
 struct Check<'a> {
@@ -92,14 +94,14 @@ impl<'a> Check<'a> {
         }
         let mut rows: Vec<Line> = vec![Vec::new(); m];
         let mut columns: Vec<Line> = Vec::with_capacity(n);
-        let mut row_sum = vec![0i64; m];
+        let mut row_sum = vec![0i128; m];
         let mut norm = 1;
         for (j, c) in model.columns.iter().enumerate() {
             let mut column = Vec::with_capacity(c.entries.len());
-            let mut sum = 0i64;
+            let mut sum = 0i128;
             for (i, a) in &c.entries {
                 let v = a.numer() * &row_scale[*i as usize].div_exact(a.denom());
-                let Some(v) = v.to_i64().filter(|v| v.unsigned_abs() < 1 << 58) else {
+                let Some(v) = v.to_i128().filter(|v| v.unsigned_abs() < 1 << NORM) else {
                     return reject("coefficients are too long for this kind of certificate");
                 };
                 let total = &mut row_sum[*i as usize];
@@ -108,13 +110,13 @@ impl<'a> Check<'a> {
                 rows[*i as usize].push((j as u32, v));
                 column.push((*i, v));
             }
-            norm = norm.max(64 - u64::from(sum.leading_zeros()));
+            norm = norm.max(128 - u64::from(sum.leading_zeros()));
             columns.push(column);
         }
         for s in row_sum {
-            norm = norm.max(64 - u64::from(s.leading_zeros()));
+            norm = norm.max(128 - u64::from(s.leading_zeros()));
         }
-        if norm > 60 {
+        if norm > NORM {
             return reject("coefficients are too long for this kind of certificate");
         }
         let mut bound_scale = Int::one();
@@ -358,7 +360,7 @@ impl<'a> Check<'a> {
             for &(j, a) in &self.rows[i as usize] {
                 let s = self.column_step[j as usize];
                 if s != NONE {
-                    value[s as usize] = a.rem_euclid(Q as i64) as u64;
+                    value[s as usize] = a.rem_euclid(i128::from(Q)) as u64;
                     seen[s as usize] = true;
                     heap.push(std::cmp::Reverse(s));
                 }
@@ -497,6 +499,67 @@ fn centred(v: &Int, modulus: &Int) -> Int {
     if r.shl(1) > *modulus { r - modulus } else { r }
 }
 
+/// The digits of D·X from a place on, carries not yet taken.
+struct Window {
+    denominator: Vec<u64>,
+    low: usize,
+    sums: Vec<Vec<u128>>,
+}
+
+/// What lies below a window can carry into it at most this.
+fn error<const Q: u64>(low: usize) -> Int {
+    Int::from(Q) * Int::from(low as u64)
+}
+
+impl Window {
+    /// Widens to all digits there are.
+    fn extend(&mut self, digits: &[Vec<u32>]) {
+        let size = digits.first().map_or(0, Vec::len);
+        for top in self.low + self.sums.len()..digits.len() {
+            let mut sum = vec![0u128; size];
+            // Four products of two digits fit a word.
+            let take = self.denominator.len().min(top + 1);
+            for (group, d) in self.denominator[..take].chunks(4).enumerate() {
+                let at = top - 4 * group;
+                if let [a, b, c, e] = *d {
+                    let (w, x) = (&digits[at], &digits[at - 1]);
+                    let (y, z) = (&digits[at - 2], &digits[at - 3]);
+                    for (j, s) in sum.iter_mut().enumerate() {
+                        let first = a * u64::from(w[j]) + b * u64::from(x[j]);
+                        let second = c * u64::from(y[j]) + e * u64::from(z[j]);
+                        *s += u128::from(first + second);
+                    }
+                } else {
+                    for (i, &d) in d.iter().enumerate() {
+                        for (s, &x) in sum.iter_mut().zip(&digits[at - i]) {
+                            *s += u128::from(d * u64::from(x));
+                        }
+                    }
+                }
+            }
+            self.sums.push(sum);
+        }
+    }
+
+    /// The leading digits of D·X modulo Qᴷ, if they show every |N| small enough.
+    fn leading<const Q: u64>(&self, norm: u64) -> Option<Vec<Int>> {
+        let modulus = Int::from(Q).pow(self.sums.len() as u32);
+        let limit = modulus.bits().checked_sub(norm + 6)?;
+        let error = error::<Q>(self.low).bits();
+        let size = self.sums.first().map_or(0, Vec::len);
+        let mut leading = Vec::with_capacity(size);
+        for j in 0..size {
+            let parts: Vec<Int> = self.sums.iter().map(|s| Int::from(s[j] as i128)).collect();
+            let v = centred(&join::<Q>(&parts), &modulus);
+            if v.bits().max(error) + 1 > limit {
+                return None;
+            }
+            leading.push(v);
+        }
+        Some(leading)
+    }
+}
+
 impl Digits {
     /// Lifts G·X = b until the residues of D·X prove themselves.
     fn lift<const Q: u64>(
@@ -510,13 +573,19 @@ impl Digits {
         let rhs_bits = rhs.iter().map(Int::bits).max().unwrap_or(0);
         // Room for Σ|a|·|N| and D·|constant| in every question asked.
         let room = 2 * norm.max(rhs_bits) + 40;
-        let precision = 8 + d.bits() / (DIGIT * 16);
+        let precision = 8 + d.bits() / (DIGIT * 32);
         let mut count = ((d.bits() + room) / DIGIT + 2) as usize;
         let signs: Vec<i64> = rhs.iter().map(|b| i64::from(b.sign())).collect();
         let feed: Vec<Vec<u64>> = rhs.iter().map(base::<Q>).collect();
         let mut residue = vec![0i128; size];
         let mut digits: Vec<Vec<u32>> = Vec::new();
         let mut work = vec![0u64; size];
+        let width = (room / DIGIT + precision) as usize + 3;
+        let mut window = Window {
+            denominator: base::<Q>(d),
+            low: count.saturating_sub(width),
+            sums: Vec::new(),
+        };
         for attempt in 0.. {
             while digits.len() < count {
                 let k = digits.len();
@@ -529,16 +598,27 @@ impl Digits {
                 solve(&mut work);
                 for (i, r) in residue.iter_mut().enumerate() {
                     for &(j, a) in &lines[i] {
-                        *r -= i128::from(a) * i128::from(work[j as usize]);
+                        *r -= a * i128::from(work[j as usize]);
                     }
                     *r /= i128::from(Q);
                 }
                 digits.push(work.iter().map(|&v| v as u32).collect());
             }
-            let width =
-                ((room / DIGIT + precision) as usize + 3 + (attempt as usize) * 4).min(count);
-            if let Some(proven) = Digits::prove::<Q>(&digits, d, width, norm.max(rhs_bits)) {
-                return Ok(Digits { digits, ..proven });
+            window.extend(&digits);
+            if let Some(leading) = window.leading::<Q>(norm.max(rhs_bits)) {
+                let low = window.low;
+                return Ok(Digits {
+                    digits,
+                    denominator: d.clone(),
+                    denominator_digits: window.denominator,
+                    leading,
+                    low,
+                    error: if low == 0 {
+                        Int::zero()
+                    } else {
+                        error::<Q>(low)
+                    },
+                });
             }
             if attempt == 6 {
                 return no("a denominator is wrong");
@@ -548,49 +628,8 @@ impl Digits {
         no("a denominator is wrong")
     }
 
-    /// The leading digits of D·X modulo Qᴷ, if they show every |N| small enough.
-    fn prove<const Q: u64>(
-        digits: &[Vec<u32>],
-        d: &Int,
-        width: usize,
-        norm: u64,
-    ) -> Option<Digits> {
-        let count = digits.len();
-        let low = count - width;
-        let size = digits.first().map_or(0, Vec::len);
-        let d_digits = base::<Q>(d);
-        let modulus = Int::from(Q).pow(width as u32);
-        let limit = modulus.bits().checked_sub(norm + 6)?;
-        let error = Int::from(Q) * Int::from(low as u64);
-        let mut sums = vec![vec![0u128; size]; width];
-        for (t, sum) in sums.iter_mut().enumerate() {
-            for (i, &d) in d_digits.iter().enumerate().take(low + t + 1) {
-                for (s, &x) in sum.iter_mut().zip(&digits[low + t - i]) {
-                    *s += u128::from(d * u64::from(x));
-                }
-            }
-        }
-        let mut leading = Vec::with_capacity(size);
-        for j in 0..size {
-            let parts: Vec<Int> = sums.iter().map(|s| Int::from(s[j] as i128)).collect();
-            let v = centred(&join::<Q>(&parts), &modulus);
-            if v.bits().max(error.bits()) + 1 > limit {
-                return None;
-            }
-            leading.push(v);
-        }
-        Some(Digits {
-            digits: Vec::new(),
-            denominator: d.clone(),
-            denominator_digits: d_digits,
-            leading,
-            low,
-            error: if low == 0 { Int::zero() } else { error },
-        })
-    }
-
     /// The sign of Σ a·X − c.
-    fn sign<const Q: u64>(&self, terms: &[(u32, i64)], constant: &Int) -> i32 {
+    fn sign<const Q: u64>(&self, terms: &[(u32, i128)], constant: &Int) -> i32 {
         if terms.is_empty() {
             return -constant.sign();
         }
@@ -598,7 +637,7 @@ impl Digits {
         let mut spread = 0i128;
         for &(k, a) in terms {
             sum += &(&self.leading[k as usize] * &Int::from(a));
-            spread += i128::from(a).abs();
+            spread += a.abs();
         }
         let mut off = Int::from(spread) * self.error.clone();
         if !constant.is_zero() {
@@ -620,7 +659,7 @@ impl Digits {
         for (k, x) in self.digits.iter().enumerate() {
             carry -= sign * i128::from(feed.get(k).copied().unwrap_or(0));
             for &(j, a) in terms {
-                carry += i128::from(a) * i128::from(x[j as usize]);
+                carry += a * i128::from(x[j as usize]);
             }
             let r = carry.rem_euclid(i128::from(Q));
             zero &= r == 0;

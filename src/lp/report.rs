@@ -126,7 +126,7 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
     let rational = |v: &Value| -> Result<Option<Rat>, String> {
         match v {
             Value::Null => Ok(None),
-            Value::String(s) => parse(s).map(Some),
+            Value::String(s) => self::rational(s).map(Some),
             _ => Err("a rational is a string".into()),
         }
     };
@@ -192,7 +192,7 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
 }
 
 /// Long integers pass the literal's limit on digits, which is for people.
-fn parse(s: &str) -> Result<Rat, String> {
+pub(crate) fn rational(s: &str) -> Result<Rat, String> {
     if let Ok(v) = literal::parse(s) {
         return Ok(v);
     }
@@ -240,7 +240,10 @@ impl<'a> Names<'a> {
                 .0
                 .get(name.as_str())
                 .ok_or(format!("unknown name `{name}`"))?;
-            numerators.push((index, parse(n.as_str().ok_or("a numerator is a string")?)?));
+            numerators.push((
+                index,
+                self::rational(n.as_str().ok_or("a numerator is a string")?)?,
+            ));
         }
         numerators.sort_by_key(|e| e.0);
         Ok(Vector {

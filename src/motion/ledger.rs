@@ -1,5 +1,6 @@
 //! The ledger of a simulation: what was asked, what settled it, what it cost.
 
+use super::phase::Method;
 use crate::number::filter::Counts;
 
 /// What one simulation asked and spent.
@@ -12,6 +13,18 @@ pub struct Ledger {
     pub degenerate_events: u64,
     /// One entry a phase that was run.
     pub phases: Vec<PhaseCost>,
+}
+
+impl Ledger {
+    /// Which algorithm ran, in a run that was asked for one: where the choice was open, the sweep if any
+    /// pawl of any phase ran by it.
+    pub fn ran(&self, asked: Method) -> Method {
+        match asked {
+            Method::Auto if self.phases.iter().any(|p| p.swept > 0) => Method::Sweep,
+            Method::Auto => Method::Naive,
+            asked => asked,
+        }
+    }
 }
 
 /// What one phase cost, all pawls together.

@@ -2,7 +2,8 @@
 
 use super::ledger::{Ledger, PhaseCost};
 use super::phase::{Method, Run, Setting, run};
-use super::root::{first_collision, obstacle_polygon};
+use super::root::first_collision;
+use super::solids::Solids;
 use super::trajectory::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
     Trajectory,
@@ -171,7 +172,7 @@ fn simulate_with<K: Kernel>(
     let mut ledger = Ledger::default();
     let obstacles: Vec<ObstacleShape<K::Num>> =
         scene.obstacles.iter().map(ObstacleShape::new).collect();
-    let fixed: Vec<Polygon> = scene.obstacles.iter().map(obstacle_polygon).collect();
+    let fixed = Solids::new(&scene.obstacles);
     let shapes: Vec<PawlShape<K::Num>> = scene.pawls.iter().map(PawlShape::new).collect();
     let turning: Vec<Polygon> = scene
         .pawls

@@ -7,7 +7,7 @@ use super::ledger::LedgerDocument;
 use super::num::{Num, Numbers, Orientation};
 use crate::contact::{Contact, ContactKind};
 use crate::motion::trajectory::Sliding;
-use crate::motion::{self, OutcomeKind, RootContact, Trajectory};
+use crate::motion::{self, Method, OutcomeKind, RootContact, Trajectory};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
 use schemars::generate::SchemaSettings;
@@ -270,8 +270,8 @@ pub struct CurveDocument {
 pub struct Provenance {
     /// Which arithmetic decided.
     pub arithmetic: &'static str,
-    /// Which algorithm ran.
-    pub method: &'static str,
+    /// Which algorithm was asked for: where the choice was open, the result names the one that ran.
+    pub method: Method,
 }
 
 impl ResultDocument {
@@ -285,7 +285,7 @@ impl ResultDocument {
             schema: "snapfit.result/1",
             scene: scene.name.clone(),
             arithmetic: how.arithmetic,
-            method: how.method,
+            method: trajectory.ledger.ran(how.method).name(),
             backend: crate::number::backend().name(),
             phases: trajectory
                 .phases

@@ -15,11 +15,13 @@ mod arc;
 mod build;
 mod free;
 mod predicates;
+mod scout;
+mod shop;
 mod strip;
 
 pub use crate::kernel::Time;
-pub use arc::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
-pub use build::Slice;
+pub use arc::{Arc, ArcId, Curve, CurveId, End, Exact, Shape, Side};
 pub use free::{Configuration, Free, FreeEdge, FreeVertex, Interval, Touch, Whereabouts};
 pub use predicates::{Cross, Germs, Point, cmp_horizontal};
+pub use shop::Slice;
 pub use strip::Owner;

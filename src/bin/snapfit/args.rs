@@ -204,7 +204,7 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "num")]
     pub(crate) backend: Backend,
     /// Which algorithm runs
-    #[arg(long, value_enum, default_value = "sweep")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub(crate) method: Method,
     /// Give up, undecided, after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
@@ -257,6 +257,8 @@ pub(crate) enum Backend {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
+    /// By the size of each phase; the result says what ran
+    Auto,
     /// A sweep over the free component; with exact or f64 every step looks at every arc
     Sweep,
     /// Every step looks at every arc

@@ -187,6 +187,7 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
 pub(crate) fn run_generate(args: &GenerateArgs) -> Result<u8, Failure> {
     let structure = match (&args.drawing, args.bodies) {
         (Some(path), _) => {
+            output::spare_input(path, args.out.as_deref())?;
             let text =
                 std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
             flex::apps::layout::layout(&args.family, &text)?

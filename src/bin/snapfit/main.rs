@@ -79,8 +79,11 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Brace(args) => flex_apps::run_brace(args),
         Verb::Loosen(args) => flex_apps::run_loosen(args),
         Verb::Separate(args) => flex_apps::run_separate(args),
-        Verb::Lp(args) => Ok(progress::solving(args)),
-        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
+        Verb::Lp(args) => {
+            output::spare_input(&args.model, args.out.as_deref())?;
+            Ok(progress::solving(args))
+        }
+        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args, &output::write)),
         Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
@@ -254,13 +257,14 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     let arithmetic = arithmetic(engine);
     Ok(Provenance {
         arithmetic: arithmetic.name(),
-        method: method(engine).under(&arithmetic).name(),
+        method: method(engine).under(&arithmetic),
     })
 }
 
 /// The algorithm that the options ask for.
 fn method(engine: &Engine) -> motion::Method {
     match engine.method {
+        Method::Auto => motion::Method::Auto,
         Method::Sweep => motion::Method::Sweep,
         Method::Naive => motion::Method::Naive,
     }

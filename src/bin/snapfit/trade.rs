@@ -95,10 +95,16 @@ pub(crate) fn run(args: &Trade) -> Result<u8, Failure> {
 }
 
 fn compare(args: &Trade) -> Result<u8, Failure> {
+    output::apart(args.svg.as_deref(), args.out.as_deref())?;
     if let Some(name) = &args.breakdown {
         return close(args, name);
     }
     let files = collect(&args.files)?;
+    for file in &files {
+        for to in [&args.svg, &args.out] {
+            output::spare_input(file, to.as_deref())?;
+        }
+    }
     let mut scenes = Vec::new();
     for file in &files {
         let bytes = std::fs::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
