@@ -43,7 +43,7 @@ pub use bound::{OuterBound, outer_bound};
 pub use motion::{Contact as FirstContact, ProofSize};
 pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
-pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
+pub use read::{Guise, MAX_STEPS, StructureFile, guise, is_structure, read_structure};
 pub use schema::structure_schema;
 pub use shape::Pose;
 pub use step::{Corners, Ending, FlexOptions, FlexProgress, Flexed, Step, Violation, flex};

@@ -199,7 +199,7 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "filtered")]
     pub(crate) arithmetic: Arithmetic,
     /// With f64: zeros nearer than this are one
-    #[arg(long, value_name = "DISTANCE", value_parser = tolerance, default_value = "1e-9")]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = tolerance, default_value = "1e-9")]
     pub(crate) tolerance: f64,
     /// With f64: which zeros are taken for one
     #[arg(long, value_enum, default_value = "names")]
@@ -214,7 +214,7 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) face: snapfit::face::Method,
     /// Give up, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub(crate) time_limit: Option<Duration>,
 }
 
@@ -231,7 +231,8 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
         .map_err(|_| "expected a number of seconds".to_owned())?;
-    Duration::try_from_secs_f64(seconds).map_err(|e| e.to_string())
+    Duration::try_from_secs_f64(seconds)
+        .map_err(|_| "expected a number of seconds that is not negative".to_owned())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

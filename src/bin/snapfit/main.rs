@@ -18,6 +18,7 @@ use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render,
 use clap::Parser;
 use clap::error::ErrorKind;
 use snapfit::analysis;
+use snapfit::flex::{Guise, guise};
 use snapfit::kernel::{FloatOptions, Identify};
 use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
@@ -200,7 +201,24 @@ fn overrides(common: &Common) -> Result<Vec<(&str, &str)>, Failure> {
 
 fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<SceneFile, Failure> {
     let overrides = overrides(common)?;
-    scene::read_scene_bytes(name, bytes, &overrides).map_err(Failure::Scene)
+    scene::read_scene_bytes(name, bytes, &overrides)
+        .map_err(|errors| mistaken(name, bytes, Guise::Scene, errors))
+}
+
+/// A file of another kind is named as such, instead of all its keys that are unknown here.
+fn mistaken(name: &str, bytes: &[u8], wanted: Guise, errors: Vec<Diagnostic>) -> Failure {
+    let is = guise(name, bytes).filter(|g| *g != wanted);
+    let help = match (is, wanted) {
+        (Some(Guise::Result), _) => "this is a result; give the file that it was made from",
+        (Some(Guise::Structure), _) => {
+            "this is a structure; it is for flex, brace, loosen, separate, render and check"
+        }
+        (Some(Guise::Scene), _) => {
+            "this is a scene; it is for simulate, classify, forces, slice, trade, render and check"
+        }
+        (None, _) => return Failure::Scene(errors),
+    };
+    Failure::Message(format!("{name}:1:1: {help}"))
 }
 
 fn simulated(

@@ -35,7 +35,7 @@ pub(crate) struct SliceArgs {
     #[arg(long, value_name = "TIME,TAN_HALF", allow_hyphen_values = true)]
     reach: Vec<String>,
     /// Ask for the free intervals just after a time from the start of the phase (repeatable)
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     at: Vec<String>,
     /// Ask how the pawl would move from the orientation tan(θ/2) at the start of the phase (repeatable)
     #[arg(long, value_name = "TAN_HALF", allow_hyphen_values = true)]

@@ -38,7 +38,7 @@ pub(crate) struct Trade {
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: u32,
     /// f64: zeros nearer than this are one
-    #[arg(long, value_name = "DISTANCE", value_parser = super::args::tolerance, default_value = "1e-9")]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = super::args::tolerance, default_value = "1e-9")]
     tolerance: f64,
     /// Take the least time of so many runs
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -47,7 +47,7 @@ pub(crate) struct Trade {
     #[arg(long)]
     fast: bool,
     /// Give up on a run, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = super::args::seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "20", allow_negative_numbers = true, value_parser = super::args::seconds)]
     time_limit: Duration,
     /// What to print [default: table on a terminal, else json]
     #[arg(long, value_enum)]
