@@ -87,6 +87,7 @@ impl<K: Kernel> Runner<'_, K> {
             degenerate: self.degenerate,
             method: self.method,
             free: self.free,
+            faces: self.faces,
         }
     }
 }

@@ -5,6 +5,7 @@
 //! `sight`): all of them, O(n) box tests a step, or those that the boundary of F names.
 
 use super::friction::stick_time;
+use super::ledger::FaceCost;
 use super::local::{Incident, Place, State, incident, is_tangency, resolve};
 use super::sight::{All, Sight};
 use super::solids::Solids;
@@ -37,6 +38,8 @@ pub struct Run<K: Kernel = Filtered> {
     pub method: Method,
     /// F, where the sweep ran; the first, if it led on into another.
     pub free: Option<Rc<Free>>,
+    /// How F was come by, as often as it was.
+    pub faces: FaceCost,
 }
 
 /// What a pawl's run needs besides the slice.
@@ -59,6 +62,8 @@ pub struct Setting<'a> {
     pub method: Method,
     /// F of another run through the slice: it is not made again if it holds this run's start too.
     pub known: Option<Rc<Free>>,
+    /// The way to F.
+    pub face: crate::face::Method,
 }
 
 /// Which algorithm runs. Both are to give the same answers.
@@ -121,6 +126,7 @@ pub(super) struct Runner<'a, K: Kernel> {
     /// What ran.
     pub(super) method: Method,
     pub(super) free: Option<Rc<Free>>,
+    pub(super) faces: FaceCost,
     pub(super) degenerate: u64,
 }
 
@@ -154,6 +160,7 @@ pub fn run<K: Kernel>(
         sight: Box::new(All::new(slice)),
         method: Method::Naive,
         free: None,
+        faces: FaceCost::default(),
         degenerate: 0,
     };
     let stop = r.go(start, touching);
@@ -189,7 +196,8 @@ impl<K: Kernel> Runner<'_, K> {
             &Place::new(z.clone(), start.half_turn),
         );
         let next = self.begin(start, &z, &inc, touching);
-        if self.set.method.sweeps(self.slice.arcs().len()) && K::ENCLOSES {
+        let known = self.set.method == Method::Auto && self.set.known.is_some();
+        if (known || self.set.method.sweeps(self.slice.arcs().len())) && K::ENCLOSES {
             let seed = self.seed(&next, start, &z, &inc);
             self.look_from(seed);
         }

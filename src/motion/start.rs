@@ -118,8 +118,14 @@ impl<K: Kernel> Runner<'_, K> {
                 .into_iter()
                 .find(|f| f.locate(&at) == Whereabouts::Inside)
             {
-                Some(f) => Some(f.clone()),
-                None => Free::new(self.slice, &at).map(Rc::new),
+                Some(f) => {
+                    self.faces.reused += 1;
+                    Some(f.clone())
+                }
+                None => {
+                    let made = Free::new(self.slice, &at, self.set.face);
+                    made.inspect(|f| self.faces.found(f.found())).map(Rc::new)
+                }
             }
         });
         match free {
@@ -129,6 +135,7 @@ impl<K: Kernel> Runner<'_, K> {
                 self.method = Method::Sweep;
             }
             None => {
+                self.faces.abandoned += u64::from(self.free.is_some());
                 self.sight = Box::new(All::new(self.slice));
                 self.method = Method::Naive;
             }

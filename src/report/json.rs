@@ -340,6 +340,27 @@ pub(super) fn named_contact(scene: &Scene, contact: &Contact) -> ContactDocument
     Writer { scene, numbers }.contact(contact)
 }
 
+/// The events and segments of one run through a phase, times counted from its start.
+pub(super) fn run_documents(
+    scene: &Scene,
+    phase: usize,
+    run: &motion::Run,
+) -> (Vec<EventDocument>, Vec<SegmentDocument>) {
+    let zero = motion::Phase {
+        from: Rat::zero(),
+        to: Rat::zero().into(),
+        offset: Default::default(),
+        velocity: Default::default(),
+    };
+    let phases = vec![zero; phase + 1];
+    let numbers = Numbers::new(&phases);
+    let mut writer = Writer { scene, numbers };
+    (
+        run.events.iter().map(|e| writer.event(e)).collect(),
+        run.segments.iter().map(|s| writer.segment(s)).collect(),
+    )
+}
+
 struct Writer<'a> {
     scene: &'a Scene,
     numbers: Numbers<'a>,

@@ -1,38 +1,19 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
 use super::arc::Exact;
+use super::names::{Lines, Name, Named, Names};
 use super::shop::Curves;
+use super::valid::{Filter, valid_graph, wedge_ok};
 use super::{Arc, Curve, CurveId, End, Shape, Side};
 use crate::contact::{
-    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Ring, Trig,
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig,
 };
 use crate::geometry::Vec2;
 use crate::kernel::{Instant, Kernel, Polynomial, Position};
+use crate::number::Scalar;
 use crate::number::filter::{self, Stage};
-use crate::number::{Interval, Scalar};
 use std::collections::HashMap;
 use std::rc::Rc;
-
-/// A point whose name is known: equal names share one handle.
-#[derive(Debug)]
-pub(super) struct Named<K: Kernel> {
-    pub(super) x: K::Root,
-    pub(super) t: std::cell::OnceCell<K::Time>,
-}
-
-/// The points of one name, ascending.
-type Names<K> = Rc<[Rc<Named<K>>]>;
-
-/// The names of points where arcs can end (idea 2: names before numbers).
-#[derive(PartialEq, Eq, Hash)]
-enum Name<R> {
-    /// A pawl vertex on an obstacle vertex, both by their coordinates.
-    VertexVertex(Box<(Vec2<R>, Vec2<R>)>, Chart),
-    /// A pawl edge flush on an obstacle edge, both by their supporting lines.
-    Flush(u32, u32, Chart),
-    /// A vertical tangency of a curve.
-    Tangency(CurveId, Chart),
-}
 
 /// Turns patches into arcs, and knows the names of what it has met.
 pub(super) struct Builder<K: Kernel> {
@@ -52,131 +33,12 @@ pub(super) struct Builder<K: Kernel> {
     pub(super) through: Vec<Vec<(Chart, Rc<Named<K>>)>>,
 }
 
-/// Supporting lines (normal, offset) numbered so that collinear edges share a number; each when first asked
-/// for, since most edges of a long obstacle are out of reach.
-struct Lines<K: Kernel> {
-    rings: Vec<Ring<K::Num>>,
-    /// The first edge of each ring, numbered through all of them.
-    first: Vec<u32>,
-    seen: HashMap<K::Key, u32>,
-    of_edge: HashMap<u32, u32>,
-}
-
-impl<K: Kernel> Lines<K> {
-    fn new<'a>(rings: impl Iterator<Item = &'a Ring<K::Num>>) -> Lines<K> {
-        let rings: Vec<_> = rings.cloned().collect();
-        let mut next = 0;
-        let mut first = Vec::with_capacity(rings.len());
-        for r in &rings {
-            first.push(next);
-            next += r.len() as u32;
-        }
-        Lines {
-            rings,
-            first,
-            seen: HashMap::new(),
-            of_edge: HashMap::new(),
-        }
-    }
-
-    fn number(&mut self, edge: u32) -> u32 {
-        if let Some(&n) = self.of_edge.get(&edge) {
-            return n;
-        }
-        let r = self.first.partition_point(|&f| f <= edge) - 1;
-        let (ring, k) = (&self.rings[r], (edge - self.first[r]) as usize);
-        let (n, on) = (&ring.normals[k], &ring.vertices[k]);
-        // Offset first, so that the sign is fixed by the normal alone and orientation stays
-        // out of the name.
-        let line = [n.dot(on), n.x.clone(), n.y.clone()];
-        let next = self.of_edge.len() as u32;
-        let number = match K::primitive(&line) {
-            Some((line, _)) => *self.seen.entry(K::key(&line)).or_insert(next),
-            None => next,
-        };
-        self.of_edge.insert(edge, number);
-        number
-    }
-}
-
 /// One break point of a patch in a chart.
 struct Break<K: Kernel> {
     x: K::Root,
     point: Option<Rc<Named<K>>>,
 }
 
-/// Interval versions of a patch's conditions in one chart, to settle samples without big numbers.
-struct Filter {
-    f0: [Interval; 3],
-    f1: [Interval; 3],
-    wedge: [[Interval; 3]; 2],
-    location: [([Interval; 3], [Interval; 3]); 2],
-}
-
-fn enclose<R: Scalar>(t: &Trig<R>, chart: Chart) -> [Interval; 3] {
-    let f = t.form(chart);
-    [f[0].interval(), f[1].interval(), f[2].interval()]
-}
-
-fn horner(f: &[Interval; 3], x: Interval) -> Interval {
-    (f[2] * x + f[1]) * x + f[0]
-}
-
-impl Filter {
-    fn new<R: Scalar>(p: &Patch<R>, chart: Chart) -> Filter {
-        Filter {
-            f0: enclose(&p.f0, chart),
-            f1: enclose(&p.f1, chart),
-            wedge: [enclose(&p.wedge[0], chart), enclose(&p.wedge[1], chart)],
-            location: [0, 1].map(|k| {
-                (
-                    enclose(&p.location[k].0, chart),
-                    enclose(&p.location[k].1, chart),
-                )
-            }),
-        }
-    }
-    /// Whether the patch is real on its graph at x, where the intervals can tell.
-    fn valid_graph(&self, x: Interval) -> Option<bool> {
-        let mut sure = true;
-        for w in &self.wedge {
-            match horner(w, x).sign() {
-                Some(s) if s < 0 => return Some(false),
-                Some(s) if s > 0 => {}
-                _ => sure = false,
-            }
-        }
-        let (f0, f1) = (horner(&self.f0, x), horner(&self.f1, x));
-        for (l0, l1) in &self.location {
-            match ((horner(l0, x) * f1 - f0 * horner(l1, x)).sign(), f1.sign()) {
-                (Some(a), Some(b)) if a * b < 0 => return Some(false),
-                (Some(a), Some(b)) if a * b > 0 => {}
-                _ => sure = false,
-            }
-        }
-        sure.then_some(true)
-    }
-}
-
-fn wedge_ok<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
-    p.wedge.iter().all(|w| w.value(chart, x).sign() >= 0)
-}
-
-/// Whether the patch is real at position x of its graph, exactly.
-fn valid_graph<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
-    if !wedge_ok(p, chart, x) {
-        return false;
-    }
-    let (f0, f1) = (p.f0.value(chart, x), p.f1.value(chart, x));
-    let s = f1.sign();
-    p.location.iter().all(|(l0, l1)| {
-        let v = l0.value(chart, x).times(&f1);
-        let v = v.minus(&f0.times(&l1.value(chart, x)));
-        v.sign() * s >= 0
-    })
-}
-
-/// P(u) given in u = tan(θ/2) as a polynomial of a chart's x (multiplied by x² > 0 there).
 fn in_chart<K: Kernel>(c: &[K::Coef; 3], chart: Chart) -> K::Poly {
     K::Poly::of_curve(c, chart == Chart::Back)
 }

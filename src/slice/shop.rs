@@ -66,7 +66,6 @@ impl<K: Kernel> Slice<K> {
                 roughs.push((rough.f0, rough.f1));
             }
         });
-        let limit_count = if limits.is_some() { 2 } else { 0 };
         let end = Scalar::interval(&frame.duration).hi;
         let shop = Rc::new(Shop {
             builder: RefCell::new(Builder::new(
@@ -74,7 +73,7 @@ impl<K: Kernel> Slice<K> {
                 pawl.clone(),
                 obstacles.to_vec().into(),
             )),
-            curves: Curves::new(pairs.len() + limit_count),
+            curves: Curves::new(pairs.len() + LIMITS),
             patches: pairs.iter().map(|_| OnceCell::new()).collect(),
             made: pairs.iter().map(|_| OnceCell::new()).collect(),
             pairs: pairs.iter().map(|p| (p.0, p.1)).collect(),
@@ -88,21 +87,25 @@ impl<K: Kernel> Slice<K> {
                     arcs.extend(whole.map(|s| s.arc(shop.clone(), i)));
                 }
                 None => {
-                    let made = shop.made(i).iter();
-                    // What lies wholly before the phase or wholly after it can never be met.
-                    let met = made.filter(|a| a.t_span.hi >= 0.0 && a.t_span.lo <= end);
-                    arcs.extend(met.cloned());
+                    arcs.extend(shop.within(i, end));
                 }
             }
             patch_of.resize(arcs.len(), Some(i));
         }
         if let Some((lo, hi)) = limits {
-            let mut builder = shop.builder.borrow_mut();
             for (which, u) in [(0, lo), (1, hi)] {
-                arcs.push(builder.limit(&shop.curves, u, which));
+                arcs.push(shop.limit(u, which));
                 patch_of.push(None);
             }
         }
+        Slice::of(frame, arcs, patch_of, shop)
+    }
+    fn of(
+        frame: Frame<K::Num>,
+        arcs: Vec<Arc<K>>,
+        patch_of: Vec<Option<u32>>,
+        shop: Rc<Shop<K>>,
+    ) -> Slice<K> {
         let mut by_chart = [Vec::new(), Vec::new()];
         for (i, a) in arcs.iter().enumerate() {
             by_chart[a.chart.index()].push(i as ArcId);
@@ -116,6 +119,19 @@ impl<K: Kernel> Slice<K> {
             shop,
             crossings: Mutex::default(),
         }
+    }
+    /// The same patches with other arcs, as many and in the same order.
+    pub(super) fn with_arcs(
+        &self,
+        frame: Frame<K::Num>,
+        arcs: Vec<Arc<K>>,
+        shop: Rc<Shop<K>>,
+    ) -> Slice<K> {
+        Slice::of(frame, arcs, self.patch_of.clone(), shop)
+    }
+    /// Which patch an arc was cut from; None for a limit stop.
+    pub(super) fn patch_id(&self, id: ArcId) -> Option<u32> {
+        self.patch_of[id as usize]
     }
     /// All arcs.
     pub fn arcs(&self) -> &[Arc<K>] {
@@ -148,6 +164,9 @@ impl<K: Kernel> Slice<K> {
         self.patch_of[id as usize].map(|i| self.shop.patch(i))
     }
 }
+
+/// Angular stops of a pawl, at most.
+const LIMITS: usize = 2;
 
 /// Curves by their ids; there is room for one a patch from the beginning, so that none ever moves.
 #[derive(Debug)]
@@ -213,6 +232,29 @@ impl<K: Kernel> Shop<K> {
             let arcs = self.builder.borrow_mut().cut(&self.curves, patch);
             arcs.into()
         })
+    }
+    /// The arcs of a patch, worked out, but for those that lie wholly before the phase or wholly after its
+    /// end: they can never be met.
+    pub(super) fn within(&self, i: u32, end: f64) -> Vec<Arc<K>> {
+        let made = self.made(i).iter();
+        made.filter(|a| a.t_span.hi >= 0.0 && a.t_span.lo <= end)
+            .cloned()
+            .collect()
+    }
+    /// The arc of an angular stop.
+    pub(super) fn limit(&self, u: &K::Num, which: u8) -> Arc<K> {
+        self.builder.borrow_mut().limit(&self.curves, u, which)
+    }
+    /// A shop for the same patches along another path.
+    pub(super) fn reversed(&self, frame: Frame<K::Num>) -> Shop<K> {
+        let b = self.builder.borrow();
+        Shop {
+            builder: RefCell::new(Builder::new(frame, b.pawl.clone(), b.obstacles.clone())),
+            curves: Curves::new(self.pairs.len() + LIMITS),
+            patches: self.pairs.iter().map(|_| OnceCell::new()).collect(),
+            made: self.pairs.iter().map(|_| OnceCell::new()).collect(),
+            pairs: self.pairs.clone(),
+        }
     }
     /// The exact part of the k-th arc of a patch.
     pub(super) fn exact(&self, patch: u32, k: u32, seen: &Arc<K>) -> Exact<K> {
