@@ -25,8 +25,9 @@ pub struct Slice<K: Kernel = Filtered> {
     by_chart: [Vec<ArcId>; 2],
     /// The patch that each arc was cut from (none for a limit stop).
     patch_of: Vec<Option<u32>>,
-    /// Per patch its C-function in certified doubles, where doubles may settle anything.
-    rough: Vec<Function>,
+    /// Per patch its C-function in certified doubles, where doubles may settle anything; that of the phase
+    /// as it was first run, since only common zeros are looked for.
+    rough: Rc<[Function]>,
     pub(super) shop: Rc<Shop<K>>,
     pub(super) crossings: Mutex<CrossCache<K>>,
 }
@@ -98,12 +99,13 @@ impl<K: Kernel> Slice<K> {
                 patch_of.push(None);
             }
         }
-        Slice::of(frame, arcs, patch_of, shop)
+        Slice::of(frame, arcs, patch_of, roughs.into(), shop)
     }
     fn of(
         frame: Frame<K::Num>,
         arcs: Vec<Arc<K>>,
         patch_of: Vec<Option<u32>>,
+        rough: Rc<[Function]>,
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
         let mut by_chart = [Vec::new(), Vec::new()];
@@ -115,7 +117,7 @@ impl<K: Kernel> Slice<K> {
             arcs,
             by_chart,
             patch_of,
-            rough: roughs,
+            rough,
             shop,
             crossings: Mutex::default(),
         }
@@ -127,7 +129,9 @@ impl<K: Kernel> Slice<K> {
         arcs: Vec<Arc<K>>,
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
-        Slice::of(frame, arcs, self.patch_of.clone(), shop)
+        // With time turned round f₀g₁ − g₀f₁ changes its sign and nothing else.
+        let rough = self.rough.clone();
+        Slice::of(frame, arcs, self.patch_of.clone(), rough, shop)
     }
     /// Which patch an arc was cut from; None for a limit stop.
     pub(super) fn patch_id(&self, id: ArcId) -> Option<u32> {
