@@ -736,8 +736,14 @@ impl Solution {
         nearest(&(&u * &self.denominator), &modulus)
     }
 
-    /// Σ a·x − c as a double times a power of two, for proposals.
+    /// Σ a·x − c as a double, for proposals.
     pub(crate) fn approximate(&self, terms: &[(u32, Int)], constant: &Int) -> f64 {
+        let (value, e) = self.scaled(terms, constant);
+        ldexp(value, e)
+    }
+
+    /// The same as a double and an exponent of two, which may lie past the double range.
+    pub(crate) fn scaled(&self, terms: &[(u32, Int)], constant: &Int) -> (f64, i64) {
         let (value, _) = self.estimate(terms, constant);
         let value = if value.is_zero() || self.low == 0 {
             value
@@ -747,7 +753,7 @@ impl Solution {
         let (v, e) = mantissa(&value);
         let (unit, f) = self.unit;
         let shift = if self.low == 0 { 0 } else { 64 };
-        ldexp(v * unit, e + f - shift)
+        (v * unit, e + f - shift)
     }
 }
 

@@ -31,7 +31,9 @@ pub fn to_json(model: &Model, file: &str, outcome: &Outcome) -> Value {
         "certificate": outcome.certificate.as_ref().map(|c| certificate(model, c)),
     });
     if let Some(map) = out.as_object_mut() {
-        if outcome.accuracy == "float"
+        // A feasible point's objective is not the optimum's.
+        let loose = matches!(outcome.certificate, Some(Certificate::Bounds { .. }));
+        if (outcome.accuracy == "float" || loose)
             && let Some(Value::Object(objective)) = map.get_mut("objective")
         {
             objective.remove("exact");
