@@ -320,7 +320,7 @@ impl<'a> Run<'a> {
             }
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
-            self.stations.follow(&self.scaffold, &poses);
+            self.stations.follow(&self.scaffold, &poses, &placed);
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
                 let safe = self.safe_step(&poses, &placed, k > 0);
@@ -342,7 +342,8 @@ impl<'a> Run<'a> {
                 self.tell(k, &out, last_gain, rows.len());
                 let mut solved = branch::solve(&self, &rows, &selection, &placed, &poses);
                 if self.swung {
-                    solved = self.corrected(solved, &pairs, rows.clone(), &selection, &placed, &poses);
+                    solved =
+                        self.corrected(solved, &pairs, rows.clone(), &selection, &placed, &poses);
                 }
                 let next = solved
                     .direction
