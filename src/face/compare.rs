@@ -11,6 +11,13 @@ use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
+/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
+#[derive(Clone, Copy)]
+pub(super) struct Core {
+    pub(super) middle: f64,
+    pub(super) half: f64,
+}
+
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
     above: [Approx; 5],
@@ -339,12 +346,14 @@ impl Kernel {
     }
 
     /// (c − d)·Q_d over the product of u − x for the roots x of h, each as often as said: a polynomial over the
-    /// denominator of c.
+    /// denominator of c. With a core also divided by u − x in the middle of it, as if that were a root: what
+    /// remains is part of the errors, wherever u is not in the core.
     pub(super) fn blown_up(
         &self,
         c: CurveId,
         d: CurveId,
         at: &[(NumId, usize)],
+        core: Option<Core>,
     ) -> ([Approx; 5], [Approx; 5]) {
         let a = &self.curves[c as usize];
         let mut below = [Approx::default(); 5];
@@ -358,6 +367,10 @@ impl Kernel {
             for _ in 0..order {
                 deflate(&mut top, &mut n, self.approx(x));
             }
+        }
+        if let Some(core) = core {
+            let rest = deflate(&mut top, &mut n, Approx::exact(core.middle));
+            top[0].e += (rest.v.abs() + rest.e) / core.half * (1.0 + 1e-9);
         }
         (top, below)
     }
@@ -525,9 +538,9 @@ where
     h
 }
 
-/// Divides by u − x, a factor; the degree n falls by one.
+/// Divides by u − x; the degree n falls by one. Returns what remains, which is zero for a factor.
 #[inline]
-fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
+fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) -> Approx {
     let mut carry = g[*n];
     for k in (0..*n).rev() {
         let below = g[k] + x * carry;
@@ -536,6 +549,7 @@ fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
     }
     g[*n] = Approx::default();
     *n -= 1;
+    carry
 }
 
 fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {

@@ -40,7 +40,7 @@ impl Kernel {
             let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
             let old = self.frame_near.get(&key).copied();
             if let Some(f) = old {
-                if let Some(o) = self.cmp_from(x, y, f).or_else(|| self.are_owner(x, y, f)) {
+                if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                     return Some(o);
                 }
                 if self.is_at(x, f) || self.is_at(y, f) {
@@ -50,7 +50,7 @@ impl Kernel {
             }
             let f = self.new_frame(x, bits);
             self.frame_near.insert(key, f);
-            if let Some(o) = self.cmp_from(x, y, f).or_else(|| self.are_owner(x, y, f)) {
+            if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                 return Some(o);
             }
         }

@@ -386,16 +386,39 @@ fn gcd(mut a: u64, mut b: u64) -> u64 {
     a
 }
 
+/// Whether the resultant of two quadratics (or what they degenerate to) is not zero modulo a prime.
+fn surely_coprime(p: &Poly, q: &Poly) -> bool {
+    const PRIME: u64 = 0xffff_ffff_ffff_ffc5;
+    let c: [u64; 6] =
+        std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) }.mod_u64(PRIME));
+    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64;
+    let minus = |a: u64, b: u64| {
+        let d = u128::from(a) + u128::from(PRIME) - u128::from(b);
+        (d % u128::from(PRIME)) as u64
+    };
+    let minor = |i: usize, j: usize| minus(times(c[i], c[3 + j]), times(c[j], c[3 + i]));
+    let res = minus(
+        times(minor(2, 0), minor(2, 0)),
+        times(minor(2, 1), minor(1, 0)),
+    );
+    let constant = |f: &Poly| f.degree() == Some(0);
+    constant(p) || constant(q) || res != 0
+}
+
 /// P/Q in lowest terms, without content, the last coefficient of Q positive.
 fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
     let one = || Poly::constant(Int::one());
     if p.is_zero() {
         return (Poly::zero(), one());
     }
-    let g = p.gcd(q);
     let (mut p, mut q) = (p.clone(), q.clone());
-    if let (Some(a), Some(b)) = (p.div_exact(&g), q.div_exact(&g))
-        && g.degree() != Some(0)
+    let g = if surely_coprime(&p, &q) {
+        one()
+    } else {
+        p.gcd(&q)
+    };
+    if g.degree() != Some(0)
+        && let (Some(a), Some(b)) = (p.div_exact(&g), q.div_exact(&g))
     {
         // Quotients come up to a factor; the leading coefficients give it back.
         let ratio =
@@ -412,6 +435,9 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
     } else {
         content
     };
+    if content.is_one() {
+        return (p, q);
+    }
     let unscale = |f: &Poly| Poly::new(f.coeffs().iter().map(|c| c.div_exact(&content)).collect());
     (unscale(&p), unscale(&q))
 }

@@ -254,6 +254,18 @@ impl Tracer<'_> {
         let mut near = std::mem::take(&mut self.near);
         if self.gather(item, &hull, most, &mut near) {
             self.stop(item, w, &near);
+            // As many different points in so small a window: not one point that many pass through.
+            let Window {
+                stops, stop_count, ..
+            } = self.windows[w as usize];
+            if depth >= DEEPEST
+                && stop_count as usize > crowd(DEEPEST - 1)
+                && self.pencil(item).is_none()
+            {
+                let middle = self.stops[(stops + stop_count / 2) as usize];
+                let middle = self.vertices[middle as usize].at.x;
+                self.gather_cluster(item, self.k.enclosure(middle).0, to - from, &near);
+            }
         } else {
             let kids = self.windows.len() as u32;
             self.windows.push(Window::new(from, mid));
@@ -273,6 +285,15 @@ impl Tracer<'_> {
     /// The items that may meet this one inside a hull; false as soon as there are more than `most`.
     fn gather(&mut self, item: u32, hull: &Hull, most: usize, near: &mut Vec<u32>) -> bool {
         near.clear();
+        let range = (hull.bounds[0], hull.bounds[1]);
+        let mut pencil = self.pencil(item);
+        if let Some(crowd) = pencil.and_then(|p| p.1.crowd_in(range.0, range.1)) {
+            if crowd > most {
+                return false;
+            }
+            pencil = None;
+        }
+        let pencil_id = pencil.map_or(NONE, |p| p.0);
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
@@ -318,21 +339,16 @@ impl Tracer<'_> {
             few = near.len() <= most;
             few
         };
-        let pencil = self.pencil(item);
-        if let (Some((_, pencil)), Carrier::Graph(c)) = (pencil, me.carrier) {
-            let range = (hull.bounds[0], hull.bounds[1]);
+        let pencil = (pencil_id != NONE).then(|| &self.pencils[pencil_id as usize]);
+        if let (Some(pencil), Carrier::Graph(c)) = (pencil, me.carrier) {
             pencil.query(k, c, range, &mut consider);
         }
-        if let Some((
-            _,
-            Pencil {
-                rest: Some(rest), ..
-            },
-        )) = pencil
+        if let Some(Pencil {
+            rest: Some(rest), ..
+        }) = pencil
         {
             rest.query(hull, &mut consider);
         } else {
-            let pencil = pencil.map_or(NONE, |p| p.0);
             let (bands, entries) = (&self.bands, self.tree.entries());
             let wanted = |at: usize, node: &Hull| {
                 !node.apart(hull)
@@ -346,7 +362,7 @@ impl Tracer<'_> {
                     }
             };
             self.tree.descend(wanted, |b| {
-                pencil != NONE && self.pencil_of[b as usize] == pencil || consider(b)
+                pencil_id != NONE && self.pencil_of[b as usize] == pencil_id || consider(b)
             });
         }
         self.stamp = stamp;
