@@ -27,8 +27,8 @@ pub(super) struct Frame {
 const LEVELS: [u32; 2] = [320, 1280];
 
 impl Kernel {
-    /// The order of two numbers by frames; None where these do not tell (equal numbers, above all).
-    pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId) -> Option<Ordering> {
+    /// The order of two numbers by frames of a level; None where these do not tell (equal numbers, above all).
+    pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId, level: usize) -> Option<Ordering> {
         // Those that were asked about before mostly are in one frame.
         if let (Some(&(f, a)), Some(&(g, b))) = (self.local.get(&x), self.local.get(&y))
             && f == g
@@ -36,25 +36,20 @@ impl Kernel {
         {
             return Some(o);
         }
-        for (level, &bits) in LEVELS.iter().enumerate() {
-            let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
-            let old = self.frame_near.get(&key).copied();
-            if let Some(f) = old {
-                if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
-                    return Some(o);
-                }
-                if self.is_at(x, f) || self.is_at(y, f) {
-                    // Another frame there would not tell more.
-                    continue;
-                }
-            }
-            let f = self.new_frame(x, bits);
-            self.frame_near.insert(key, f);
+        let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
+        let old = self.frame_near.get(&key).copied();
+        if let Some(f) = old {
             if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                 return Some(o);
             }
+            if self.is_at(x, f) || self.is_at(y, f) {
+                // Another frame there would not tell more.
+                return None;
+            }
         }
-        None
+        let f = self.new_frame(x, LEVELS[level]);
+        self.frame_near.insert(key, f);
+        self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
     }
 
     /// Equal, if both are proven to be the number that a frame was made for, whose equation is known if it has one

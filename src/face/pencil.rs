@@ -89,6 +89,11 @@ fn quotients(p: &[Approx; 5], q: &[Approx; 5]) -> Option<(f64, f64)> {
 }
 
 impl Pencil {
+    /// Where all members meet, and how often at least.
+    pub(super) fn known(&self) -> &[(NumId, usize)] {
+        &self.chart.at
+    }
+
     /// How many of the members pass near one another somewhere in [a, b], so that nothing is to be asked of the
     /// pencil there.
     pub(super) fn crowd_in(&self, a: f64, b: f64) -> Option<usize> {

@@ -302,7 +302,7 @@ impl Tracer<'_> {
         let me = &items[item as usize];
         let busy = self.busy.get(&item);
         let (mut few, mut tests, mut wasted) = (true, 0, 0);
-        let mut shared = Vec::new();
+        let own = self.pencil_of[item as usize];
         let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
@@ -319,20 +319,16 @@ impl Tracer<'_> {
             {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
-                if lo > hi || k.miss(c, d, lo, hi) {
+                let vain = lo > hi
+                    || if own != NONE && self.pencil_of[b as usize] == own {
+                        k.miss_beside(c, d, lo, hi, self.pencils[own as usize].known())
+                    } else {
+                        k.miss(c, d, lo, hi)
+                            || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                    };
+                if vain {
                     wasted += 1;
                     return true;
-                }
-                if let Some(mine) = busy
-                    && let Some(theirs) = self.busy.get(&b)
-                {
-                    shared.clear();
-                    let both = mine.iter().filter(|v| theirs.contains(v));
-                    shared.extend(both.map(|&v| self.vertices[v as usize].at.x));
-                    if !shared.is_empty() && k.miss_beside(c, d, lo, hi, &shared) {
-                        wasted += 1;
-                        return true;
-                    }
                 }
             }
             near.push(b);
@@ -372,6 +368,30 @@ impl Tracer<'_> {
             self.bands = Bands::new(self.k, self.items, &self.tree);
         }
         few
+    }
+
+    /// Whether an item through the vertices `mine` surely meets another over [lo, hi] only in those that both
+    /// pass through.
+    fn only_there(
+        &self,
+        mine: &[u32],
+        other: u32,
+        (c, d): (CurveId, CurveId),
+        lo: f64,
+        hi: f64,
+    ) -> bool {
+        let Some(theirs) = self.busy.get(&other) else {
+            return false;
+        };
+        let known: Vec<(NumId, usize)> = mine
+            .iter()
+            .filter(|v| theirs.contains(v))
+            .map(|&v| {
+                let x = self.vertices[v as usize].at.x;
+                (x, self.k.contact(c, d, x))
+            })
+            .collect();
+        !known.is_empty() && self.k.miss_beside(c, d, lo, hi, &known)
     }
 
     /// The remembered vertices inside an item, as hits on a window.
