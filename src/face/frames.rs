@@ -36,6 +36,13 @@ impl Kernel {
         {
             return Some(o);
         }
+        for id in [x, y] {
+            if let Some(&(f, _)) = self.local.get(&id)
+                && self.frames[f as usize].bits > u64::from(LEVELS[level])
+            {
+                return self.cmp_from(x, y, f);
+            }
+        }
         let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
         let old = self.frame_near.get(&key).copied();
         if let Some(f) = old {
@@ -122,7 +129,11 @@ impl Kernel {
                 let (r, s) = &self.framed[&(d, f)];
                 let value = p * s - r * q;
                 let bits = self.frames[f as usize].bits;
-                (scaled(&value, 4 * bits)?, self.full_difference(c, d))
+                let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
+                (
+                    scaled(&value, 4 * bits + scale)?,
+                    self.full_difference(c, d),
+                )
             }
             Def::Known => return None,
         };
@@ -166,7 +177,7 @@ fn at_frame(m: &[Int], frame: &Frame) -> Int {
 }
 
 /// v·2^-bits; None where that leaves the doubles.
-fn scaled(v: &Int, bits: u64) -> Option<Approx> {
+pub(super) fn scaled(v: &Int, bits: u64) -> Option<Approx> {
     if v.is_zero() {
         return Some(Approx::exact(0.0));
     }

@@ -7,7 +7,7 @@
 //! of curves, and numbers proven equal are united, so that the second question costs nothing.
 
 use super::approx::{Approx, horner};
-use super::frames::Frame;
+use super::frames::{Frame, scaled};
 use super::hash::FastMap;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
@@ -44,6 +44,9 @@ const SMALL: u64 = 1 << 60;
 /// Below this the coefficients of h stay below 2⁶³.
 const TINY: u64 = 1 << 29;
 
+/// Coefficients of more bits than this are scaled: h has twice as many, and is multiplied by other numbers too.
+const LONG: u64 = 256;
+
 pub(super) struct Curve {
     pub(super) p: [Approx; 3],
     pub(super) q: [Approx; 3],
@@ -52,6 +55,8 @@ pub(super) struct Curve {
     pub(super) den: u32,
     /// All coefficients are below `TINY`.
     pub(super) tiny: bool,
+    /// `p` and `q` enclose the coefficients times 2^-scale.
+    pub(super) scale: u64,
 }
 
 /// What a number is.
@@ -133,7 +138,18 @@ impl Kernel {
         if let Some(&id) = self.big_curve_ids.get(&key) {
             return Ok(id);
         }
-        let a: [Approx; 6] = std::array::from_fn(|i| Approx::from_interval(key[i].interval()));
+        // Long ones are scaled, so that products of two stay within the doubles.
+        let bits = key.iter().map(Int::bits).max().unwrap_or(0);
+        let scale = if bits > LONG { bits } else { 0 };
+        let a: [Approx; 6] = std::array::from_fn(|i| {
+            if scale == 0 {
+                return Approx::from_interval(key[i].interval());
+            }
+            scaled(&key[i], scale).unwrap_or(Approx {
+                v: 0.0,
+                e: 2f64.powi(-800),
+            })
+        });
         let id = self.curves.len() as CurveId;
         let next = (self.dens.len() + self.big_dens.len()) as u32;
         let den = Poly::new(key[3..].to_vec()).primitive();
@@ -147,6 +163,7 @@ impl Kernel {
             exact: Coeffs::Big(Box::new(key.clone())),
             den,
             tiny: false,
+            scale,
         });
         self.big_curve_ids.insert(key, id);
         Ok(id)
@@ -170,6 +187,7 @@ impl Kernel {
                 exact: Coeffs::Small(c),
                 den,
                 tiny: c.iter().all(|x| x.unsigned_abs() < TINY),
+                scale: 0,
             });
         }
         id

@@ -8,6 +8,7 @@
 use super::approx::Approx;
 use super::compare::vanishes;
 use super::kernel::{Def, Defect, Kernel, Num, NumId};
+use crate::number::modular::gcd_degree_bound;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
 
@@ -169,9 +170,9 @@ impl Kernel {
             return order;
         }
         // Numbers with no common equation are not equal: worth telling apart by ever more digits.
-        let shared = self.exact(x).defining_polynomial();
-        let shared = shared.gcd(&self.exact(y).defining_polynomial());
-        if shared.degree() == Some(0) {
+        let a = self.exact(x).defining_polynomial();
+        let b = self.exact(y).defining_polynomial();
+        if gcd_degree_bound(&a, &b) == Some(0) {
             if let Some(order) = self.cmp_in_frames(x, y, 1) {
                 return order;
             }
