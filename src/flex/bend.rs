@@ -139,8 +139,7 @@ impl Bend {
         let mut old = dot(&r, &r);
         let end = RESIDUAL * RESIDUAL * n as f64;
         for _ in 0..MOST {
-            // NaN ends it as well.
-            if !(old > end) {
+            if old <= end || old.is_nan() {
                 break;
             }
             let q: Vec<f64> = (0..n)

@@ -311,23 +311,6 @@ impl Scaffold {
         (n, from, to)
     }
 
-    /// Whether a vertex is near an edge, or past its end by no more than a little. In doubles: for
-    /// constraints that may be kept or not.
-    pub(crate) fn holds_on(&self, pair: &Pair, placed: &[Placed], past: f64) -> bool {
-        let (Plane::Edge(k), Point::Vertex(v)) = (pair.plane, pair.point) else {
-            return false;
-        };
-        let ring = &placed[pair.line_body as usize].near;
-        let (from, to) = (ring[k as usize], ring[(k as usize + 1) % ring.len()]);
-        let at = placed[pair.point_body as usize].near[v as usize];
-        let (ex, ey) = (to[0] - from[0], to[1] - from[1]);
-        let (px, py) = (at[0] - from[0], at[1] - from[1]);
-        let length = ex.hypot(ey);
-        let foot = (px * ex + py * ey) / length;
-        let height = (px * ey - py * ex) / length;
-        foot >= -past && foot <= length + past && height.abs() <= double(&self.epsilon)
-    }
-
     /// The weighted sum of displacements since the start, exactly. An angle counts as twice the
     /// tangent of half its change, which is the angle up to its third power.
     pub(crate) fn displacement(&self, poses: &[Pose]) -> Rat {

@@ -19,14 +19,13 @@ use super::grain::Grain;
 use super::model::{Row, Scaffold};
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
-use super::safe;
 use super::shape::{Placed, Pose, double};
 use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
 use crate::lp::{self, Place, Places, Status};
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::time::{Duration, Instant};
 
 /// What facing convex corners become (PF §V-A).
@@ -190,10 +189,6 @@ pub(crate) struct Run<'a> {
     /// What distances and poses are rounded by: a part of the gain asked for, since what rounding
     /// takes from bodies in a row adds up.
     fine: f64,
-    /// The pairs of the step before.
-    kept: Vec<Pair>,
-    /// Whether a step has lost what the one before had gained.
-    swung: bool,
     /// The last optimal basis: places of the columns, and of rows by pair.
     memory: RefCell<Option<Memory>>,
 }
@@ -216,9 +211,10 @@ struct Taken {
 
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
 const FINE: f64 = 0.25;
-/// A vertex that slides past the end of its edge by no more than this, in violations allowed, is
-/// still held by it: or steps would let it go and catch it again in turn.
-const KEPT: f64 = 10.0;
+/// Steps that together may gain nothing, each by itself much.
+const SWINGS: [usize; 3] = [2, 4, 6];
+/// Of what a program promises, the part of a direction followed must gain this much at least.
+const KEEPS: f64 = 0.1;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -241,8 +237,6 @@ impl<'a> Run<'a> {
             fine,
             scaffold,
             options,
-            kept: Vec::new(),
-            swung: false,
             memory: RefCell::new(None),
             deadline: options
                 .time_limit
@@ -340,15 +334,10 @@ impl<'a> Run<'a> {
                 let (pairs, rows) = self.rows(&selection, &placed);
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
-                let mut solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                if self.swung {
-                    solved =
-                        self.corrected(solved, &pairs, rows.clone(), &selection, &placed, &poses);
-                }
-                let next = solved
-                    .direction
-                    .as_ref()
-                    .map(|direction| self.search(&pairs, &poses, direction));
+                let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
+                let next = solved.direction.as_ref().map(|direction| {
+                    self.search(&pairs, &poses, direction, double(&solved.objective))
+                });
                 let (scale, next) = next.unzip();
                 Taken {
                     model_seconds,
@@ -363,7 +352,6 @@ impl<'a> Run<'a> {
                 }
             };
             pairs.clone_from(&taken.pairs);
-            self.kept.clone_from(&pairs);
             let stopped = taken.next.is_none();
             if stopped {
                 out.ending = match taken.solved.status {
@@ -413,13 +401,16 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
-            self.swung |= gain.sign() < 0;
-            // Where other corners face each other a step later, what one step gains the next may
-            // take back, over and over: the two together gain nothing.
-            let steps = &out.steps;
-            let swings = steps.len() > 1
-                && gain.sign() < 0
-                && (&gain + &steps[steps.len() - 2].gain).abs() < rules.gain;
+            // Where other corners face each other a step later, what some steps gain others may
+            // take back, over and over: together they gain nothing.
+            let taken_back = |count: usize| {
+                let last = out.steps.len().checked_sub(count);
+                last.is_some_and(|from| {
+                    let sum = out.steps[from..].iter().map(|s| &s.gain);
+                    sum.fold(Rat::zero(), |s, g| s + g).abs() < rules.gain
+                })
+            };
+            let swings = gain.sign() < 0 && SWINGS.into_iter().any(taken_back);
             if gain.abs() < rules.gain || swings {
                 out.ending = self.settled(taken.promise);
                 break;
@@ -469,13 +460,7 @@ impl<'a> Run<'a> {
         } else {
             Rat::zero()
         };
-        let mut selection = select(&self.scaffold, placed, &slack);
-        let known: HashSet<Pair> = selection.pairs.iter().copied().collect();
-        let past = KEPT * double(&self.structure.step.violation);
-        let stays = |p: &&Pair| !known.contains(p) && self.scaffold.holds_on(p, placed, past);
-        let kept: Vec<Pair> = self.kept.iter().filter(stays).copied().collect();
-        selection.pairs.extend(kept);
-        selection
+        select(&self.scaffold, placed, &slack)
     }
 
     /// All rows that hold together: the pairs and, where corners are averaged, theirs.
@@ -497,41 +482,6 @@ impl<'a> Run<'a> {
         self.stations.row(&self.scaffold, pair, placed, rounding)
     }
 
-    /// Where steps begin to take back what others gained, second-order terms decide: the program
-    /// once more, with each distance put right by what the first solution was off at its end.
-    fn corrected(
-        &self,
-        first: Solved,
-        pairs: &[Pair],
-        mut rows: Vec<Row>,
-        selection: &Selection,
-        placed: &[Placed],
-        poses: &[Pose],
-    ) -> Solved {
-        let Some(direction) = &first.direction else {
-            return first;
-        };
-        let bend = self.bend(pairs, poses);
-        let forms = &self.scaffold.forms;
-        let there = self
-            .grain()
-            .moved(poses, forms, &bend.follow(direction, 1.0), 1.0);
-        let there = self.scaffold.place(&there);
-        for (row, pair) in rows.iter_mut().zip(pairs) {
-            let off = self.scaffold.near(pair, &there).0 - safe::linear(row, direction);
-            *row = safe::hold(row, -off);
-        }
-        let second = branch::solve(self, &rows, selection, placed, poses);
-        if second.direction.is_none() {
-            return first;
-        }
-        Solved {
-            programs: first.programs + second.programs,
-            exact_pivots: first.exact_pivots + second.exact_pivots,
-            ..second
-        }
-    }
-
     /// How directions are followed from a configuration.
     fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
         // Robots of a flock are not joined: they go straight.
@@ -545,19 +495,33 @@ impl<'a> Run<'a> {
 
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
-    fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
+    fn search(
+        &self,
+        pairs: &[Pair],
+        poses: &[Pose],
+        direction: &[[f64; 3]],
+        promise: f64,
+    ) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
         let grain = self.grain();
         let forms = &self.scaffold.forms;
         let bend = self.bend(pairs, poses);
         let at = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
-        let good = |poses: &[Pose]| {
+        let before = self.scaffold.displacement(poses);
+        // A step that is to restore constraints may lose; one that is to gain must gain.
+        let least = |scale: f64| (promise > 0.0).then(|| Rat::from_f64(KEEPS * promise * scale));
+        let good = |poses: &[Pose], scale: f64| {
+            if let Some(least) = least(scale)
+                && self.scaffold.displacement(poses) - &before < least
+            {
+                return false;
+            }
             let placed = self.scaffold.place(poses);
             !self.exceeds(pairs, &placed, allowed)
                 && !super::pairs::too_deep(&self.scaffold, &placed, double(allowed))
         };
         let whole = at(1.0);
-        if good(&whole) {
+        if good(&whole, 1.0) {
             return (Rat::one(), whole);
         }
         let (mut low, mut high) = (0.0f64, 1.0f64);
@@ -565,7 +529,7 @@ impl<'a> Run<'a> {
         for _ in 0..HALVINGS {
             let middle = (low + high) / 2.0;
             let there = at(middle);
-            if good(&there) {
+            if good(&there, middle) {
                 (low, best) = (middle, there);
             } else {
                 high = middle;
