@@ -53,10 +53,12 @@ fn merges_and_the_walk_name_one_boundary() {
             merges += merged.found().merges;
             assert_eq!(merged.found().method, Way::Merge);
             seen.free = Some(Rc::new(merged));
+            let other = boundary(scene, &seen);
             assert!(
-                told == boundary(scene, &seen),
-                "seed {seed}, phase {}, leaf {leaf}\n{}",
+                told == other,
+                "seed {seed}, phase {}, leaf {leaf}: {}\n{}",
                 seen.phase,
+                told.unlike(&other),
                 scene.to_toml()
             );
         }
@@ -125,6 +127,24 @@ struct Told {
     vertices: Vec<String>,
     edges: Vec<String>,
     cycles: Vec<Vec<String>>,
+}
+
+impl Told {
+    /// What one has and the other has not.
+    fn unlike(&self, o: &Told) -> String {
+        let only = |a: &[String], b: &[String]| -> Vec<String> {
+            a.iter().filter(|x| !b.contains(x)).cloned().collect()
+        };
+        format!(
+            "vertices {:#?} {:#?} edges {:#?} {:#?} cycles {} {}",
+            only(&self.vertices, &o.vertices),
+            only(&o.vertices, &self.vertices),
+            only(&self.edges, &o.edges),
+            only(&o.edges, &self.edges),
+            self.cycles.len(),
+            o.cycles.len()
+        )
+    }
 }
 
 /// With contacts and curves, or (`bare`) places and sides alone: of overlapping contacts the first one's are told, and

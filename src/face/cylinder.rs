@@ -19,6 +19,7 @@ use super::merge::arcs_alone;
 use super::trace::{Carrier, Comp, Item, NONE, OnArc, Point, Tracer, hull_of};
 use crate::geometry::index::{EMPTY, Hull, arrange};
 use crate::number::Rat;
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 /// A strip's items, in this order: the graphs of arcs, two graphs that are its lower and upper border, the uprights of
@@ -391,6 +392,8 @@ fn finish(
     start: Point,
 ) -> Result<Boundary, OnArc> {
     let mut all = together(parts);
+    let beyond = touching_from_beyond(&mut k, strip);
+    add(&mut all, &beyond);
     add(&mut all, strip.borders());
     let first = all.items.len() as u32;
     let seam = |u: usize| first + (u - strip.uprights) as u32;
@@ -465,6 +468,41 @@ fn finish(
         order,
         cycles,
     })
+}
+
+/// The arcs beyond a border that end on it. No face that a half has found is bounded by them, but they are stops of
+/// the border: what begins at the last instant touches there. (An arc is monotone, so it touches in an end.)
+fn touching_from_beyond(k: &mut Kernel, strip: &Strip<'_>) -> Vec<Item> {
+    let borders = [0, 1].map(|i| match strip.borders()[i].carrier {
+        Carrier::Graph(c) => c,
+        Carrier::Vertical(..) => unreachable!("the borders are graphs"),
+    });
+    let mut out = Vec::new();
+    for (i, item) in strip.items.iter().enumerate() {
+        if !strip.is_arc(i as u32) {
+            continue;
+        }
+        let ends = match item.carrier {
+            Carrier::Graph(c) => [(c, item.l), (c, item.r)],
+            Carrier::Vertical(low, high) => [(low, item.l), (high, item.l)],
+        };
+        for (border, outward) in borders.into_iter().zip([Ordering::Less, Ordering::Greater]) {
+            let meets = |k: &Kernel, (c, x): (CurveId, NumId)| {
+                let (t, b) = (k.height(c, x), k.height(border, x));
+                // Not a number: it may.
+                !(t.hi() < b.lo() || b.hi() < t.lo())
+            };
+            if !ends.iter().any(|&e| meets(k, e)) {
+                continue;
+            }
+            let [a, b] = ends.map(|(c, x)| k.cmp_at(c, border, x));
+            if (a.is_eq() && b == outward) || (b.is_eq() && a == outward) {
+                out.push(*item);
+                break;
+            }
+        }
+    }
+    out
 }
 
 /// For each vertex all items through it, ascending, also those that no merge kept.

@@ -13,18 +13,20 @@
 //! threshold, so digits never pile up, and whatever rounding does to the constraints is seen by
 //! the same exact test, since it judges the rounded configuration.
 
+use super::bend::Bend;
 use super::branch::{self, Solved};
 use super::grain::Grain;
 use super::model::{Row, Scaffold};
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
+use super::safe;
 use super::shape::{Placed, Pose, double};
 use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
 use crate::lp::{self, Place, Places, Status};
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
 /// What facing convex corners become (PF §V-A).
@@ -188,6 +190,10 @@ pub(crate) struct Run<'a> {
     /// What distances and poses are rounded by: a part of the gain asked for, since what rounding
     /// takes from bodies in a row adds up.
     fine: f64,
+    /// The pairs of the step before.
+    kept: Vec<Pair>,
+    /// Whether a step has lost what the one before had gained.
+    swung: bool,
     /// The last optimal basis: places of the columns, and of rows by pair.
     memory: RefCell<Option<Memory>>,
 }
@@ -210,6 +216,9 @@ struct Taken {
 
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
 const FINE: f64 = 0.25;
+/// A vertex that slides past the end of its edge by no more than this, in violations allowed, is
+/// still held by it: or steps would let it go and catch it again in turn.
+const KEPT: f64 = 10.0;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -232,6 +241,8 @@ impl<'a> Run<'a> {
             fine,
             scaffold,
             options,
+            kept: Vec::new(),
+            swung: false,
             memory: RefCell::new(None),
             deadline: options
                 .time_limit
@@ -309,7 +320,7 @@ impl<'a> Run<'a> {
             }
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
-            self.stations.follow(&self.scaffold, &poses);
+            self.stations.follow(&self.scaffold, &poses, &placed);
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
                 let safe = self.safe_step(&poses, &placed, k > 0);
@@ -329,7 +340,11 @@ impl<'a> Run<'a> {
                 let (pairs, rows) = self.rows(&selection, &placed);
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
-                let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
+                let mut solved = branch::solve(&self, &rows, &selection, &placed, &poses);
+                if self.swung {
+                    solved =
+                        self.corrected(solved, &pairs, rows.clone(), &selection, &placed, &poses);
+                }
                 let next = solved
                     .direction
                     .as_ref()
@@ -348,6 +363,7 @@ impl<'a> Run<'a> {
                 }
             };
             pairs.clone_from(&taken.pairs);
+            self.kept.clone_from(&pairs);
             let stopped = taken.next.is_none();
             if stopped {
                 out.ending = match taken.solved.status {
@@ -397,6 +413,7 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
+            self.swung |= gain.sign() < 0;
             // Where other corners face each other a step later, what one step gains the next may
             // take back, over and over: the two together gain nothing.
             let steps = &out.steps;
@@ -452,7 +469,13 @@ impl<'a> Run<'a> {
         } else {
             Rat::zero()
         };
-        select(&self.scaffold, placed, &slack)
+        let mut selection = select(&self.scaffold, placed, &slack);
+        let known: HashSet<Pair> = selection.pairs.iter().copied().collect();
+        let past = KEPT * double(&self.structure.step.violation);
+        let stays = |p: &&Pair| !known.contains(p) && self.scaffold.holds_on(p, placed, past);
+        let kept: Vec<Pair> = self.kept.iter().filter(stays).copied().collect();
+        selection.pairs.extend(kept);
+        selection
     }
 
     /// All rows that hold together: the pairs and, where corners are averaged, theirs.
@@ -474,12 +497,60 @@ impl<'a> Run<'a> {
         self.stations.row(&self.scaffold, pair, placed, rounding)
     }
 
+    /// Where steps begin to take back what others gained, second-order terms decide: the program
+    /// once more, with each distance put right by what the first solution was off at its end.
+    fn corrected(
+        &self,
+        first: Solved,
+        pairs: &[Pair],
+        mut rows: Vec<Row>,
+        selection: &Selection,
+        placed: &[Placed],
+        poses: &[Pose],
+    ) -> Solved {
+        let Some(direction) = &first.direction else {
+            return first;
+        };
+        let bend = self.bend(pairs, poses);
+        let forms = &self.scaffold.forms;
+        let there = self
+            .grain()
+            .moved(poses, forms, &bend.follow(direction, 1.0), 1.0);
+        let there = self.scaffold.place(&there);
+        for (row, pair) in rows.iter_mut().zip(pairs) {
+            let off = self.scaffold.near(pair, &there).0 - safe::linear(row, direction);
+            *row = safe::hold(row, -off);
+        }
+        let second = branch::solve(self, &rows, selection, placed, poses);
+        if second.direction.is_none() {
+            return first;
+        }
+        Solved {
+            programs: first.programs + second.programs,
+            exact_pivots: first.exact_pivots + second.exact_pivots,
+            ..second
+        }
+    }
+
+    /// How directions are followed from a configuration.
+    fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
+        // Robots of a flock are not joined: they go straight.
+        let joined = self.scaffold.nearest.is_none() && self.scaffold.views.is_empty();
+        let links = pairs
+            .iter()
+            .filter(|_| joined)
+            .map(|p| (p.line_body as usize, p.point_body as usize));
+        Bend::new(&self.scaffold.forms, poses, links)
+    }
+
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
     fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
         let grain = self.grain();
-        let at = |scale: f64| grain.moved(poses, &self.scaffold.forms, direction, scale);
+        let forms = &self.scaffold.forms;
+        let bend = self.bend(pairs, poses);
+        let at = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
         let good = |poses: &[Pose]| {
             let placed = self.scaffold.place(poses);
             !self.exceeds(pairs, &placed, allowed)
