@@ -7,14 +7,16 @@ mod common;
 mod world;
 
 use common::count;
-use snapfit::analysis::classify::{Verdict, family, relative};
-use snapfit::analysis::escape::Start;
+use snapfit::analysis::bound::Bound;
+use snapfit::analysis::classify::{Verdict, direction, family, relative};
+use snapfit::analysis::escape::{Ground, Start};
+use snapfit::analysis::total::{Arc, total};
 use snapfit::analysis::{Ask, Wish, classify, forces};
 use snapfit::geometry::Vec2;
-use snapfit::motion::OutcomeKind;
 use snapfit::motion::root::first_collision;
+use snapfit::motion::{OutcomeKind, simulate};
 use snapfit::number::Rat;
-use snapfit::scene::{Classify, Motion, Obstacle, Pawl, Scene};
+use snapfit::scene::{Classify, Motion, Obstacle, Pawl, Scene, read_scene};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 use world::follow::{Follower, How};
@@ -64,6 +66,7 @@ fn every_design_is_decided() {
         let ask = Ask {
             deadline: Some(begin + Duration::from_secs(60)),
             critical: true,
+            ..Ask::default()
         };
         let d = classify(&s, &ask).unwrap();
         let f = forces(&s, &Wish::all(6, 0), &Ask::default()).unwrap();
@@ -263,6 +266,127 @@ fn verdicts_mind_no_more_than_they_must() {
     }
     eprintln!("{kinematic} kinematic, {friction} by friction");
     assert!(kinematic + friction > 0);
+}
+
+/// A figure of the paper in its closed basin, its corners, friction and force limit drawn anew.
+fn basin(seed: u64) -> Option<Scene> {
+    let mut r = Rng::new(seed ^ 0xBA51);
+    let name = *r.pick(&["fig5", "fig7b", "fig7d", "fig7e"]);
+    let path = format!(
+        "{}/tests/data/total-{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut s = read_scene(name, &text).unwrap().scene().clone();
+    let mut places = Rng::new(seed ^ 0x91ACE);
+    let mut moved = |v: &Vec2| {
+        let mut by = || Rat::frac(places.range(-6, 6), 40);
+        Vec2::new(&v.x + &by(), &v.y + &by())
+    };
+    for o in s.obstacles.iter_mut().filter(|o| !o.name.contains("basin")) {
+        o.vertices = o.vertices.iter().map(&mut moved).collect();
+    }
+    for p in &mut s.pawls {
+        p.vertices = p.vertices.iter().map(&mut moved).collect();
+        p.stiffness = Some(Rat::frac(r.range(1, 40), 4));
+    }
+    s.friction = r.chance(80).then(|| Rat::frac(r.range(0, 6), 4));
+    s.classify = Some(Classify {
+        total: true,
+        force_limit: r.chance(60).then(|| Rat::frac(r.range(1, 80), 8)),
+        ..Classify::default()
+    });
+    // Only what a file may say.
+    Some(read_scene("basin", &s.to_toml()).ok()?.scene().clone())
+}
+
+/// The circle's cover of random designs against random exact directions.
+#[test]
+fn covers_of_random_designs_hold() {
+    let mut proven: BTreeMap<String, usize> = BTreeMap::new();
+    let (mut seed, mut designs, mut open) = (11_000_000 + world::first_seed() * 1000, 0, 0);
+    while designs < count(400).min(40) {
+        seed += 1;
+        let _named = Named(seed);
+        let Some(s) = basin(seed) else { continue };
+        let deadline = Some(Instant::now() + Duration::from_secs(120));
+        let plan = simulate(&s, &Default::default()).unwrap();
+        let Some(start) = Start::after(&plan) else {
+            continue;
+        };
+        let whole = total(&Ground::new(&s, deadline), &start, None);
+        if whole.cover.is_empty() {
+            continue;
+        }
+        designs += 1;
+        open += usize::from(whole.undecided_width > 0.0);
+        let name = format!("{:?}", whole.class);
+        *proven.entry(name).or_default() += 1;
+        let ground = Ground::new(&s, None);
+        let mut r = Rng::new(seed);
+        for _ in 0..count(10_000) {
+            // Narrow arcs are where the verdict turns: as likely as wide ones.
+            let arc = r.pick(&whole.cover);
+            let part = r.fraction();
+            let at = &arc.from + &(&(&arc.to - &arc.from) * &part);
+            let w = Arc::unit(arc.quarter, &at);
+            let d = direction(&ground, &start, &w, &whole.distance.square(), false);
+            if d.run.outcome.kind == OutcomeKind::Bifurcated {
+                continue;
+            }
+            if let Some(v) = arc.verdict {
+                assert!(d.verdict >= v, "seed {seed}: {w:?} {:?} < {v:?}", d.verdict);
+            }
+            if whole.undecided_width == 0.0 {
+                assert!(Some(d.verdict) >= whole.class, "seed {seed}: {w:?}");
+            }
+        }
+    }
+    eprintln!("{designs} covers: {proven:?}; {open} with a part undecided");
+}
+
+/// Peaks of random hooks against their histories.
+#[test]
+fn peaks_of_random_designs_hold_against_samples() {
+    let mut met = 0;
+    for seed in (0..count(2_000) as u64).map(|k| 13_000_000 + world::first_seed() + k) {
+        let _named = Named(seed);
+        let mut s = if seed % 3 == 0 {
+            design(seed)
+        } else {
+            hook(seed)
+        };
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(7));
+        });
+        let wish = Wish {
+            digits: 12,
+            samples: 60,
+            ..Wish::default()
+        };
+        let doc = forces(&s, &wish, &Ask::default()).unwrap();
+        let read = |b: &Bound| match b {
+            Bound::Within { lo, hi } => Some([lo, hi].map(|t| t.parse::<Rat>().unwrap())),
+            Bound::Unbounded(_) => None,
+        };
+        for at in doc
+            .root
+            .iter()
+            .flat_map(|r| &r.phases)
+            .flat_map(|p| &p.history)
+        {
+            for p in &at.pawls {
+                let pawl = doc.pawls.iter().find(|q| q.name == p.pawl).unwrap();
+                let peak = pawl.peak.as_ref().unwrap();
+                met += 1;
+                if let (Some([lo, _]), Some([_, most])) = (read(&p.force), read(&peak.force)) {
+                    assert!(lo <= most, "seed {seed} at {:?}", at.time.value);
+                }
+            }
+        }
+    }
+    eprintln!("{met} loads");
+    assert!(met > 0);
 }
 
 /// Writes a random hook as a scene, to look at: `TEST_SEED=7000007 cargo test … -- --ignored hook_as`.

@@ -57,6 +57,9 @@ pub struct ClassifyDocument {
     pub escape: Option<[Num; 2]>,
     /// Radians of directions not proven at least as firmly blocked as the class.
     pub undecided_width: Option<f64>,
+    /// Whether a limit of time stopped the plan itself.
+    #[serde(skip)]
+    late: bool,
 }
 
 /// One direction of the family.
@@ -215,7 +218,7 @@ impl ClassifyDocument {
                 .directions
                 .iter()
                 .any(|d| d.outcome.kind == "undecided");
-        open || self.undecided_width.is_some_and(|w| w > 0.0)
+        open || self.late || self.undecided_width.is_some_and(|w| w > 0.0)
     }
 }
 
@@ -239,7 +242,7 @@ pub fn classify_with_way(
     let family = relative(scene, ask)?;
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
-        let ground = Ground::new(scene, ask.deadline);
+        let ground = Ground::asked(scene, ask);
         total(&ground, start, family.class)
     });
     let weakest = family.directions.iter().min_by_key(|d| d.verdict);
@@ -361,6 +364,7 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
         }),
         escape: circle.and_then(|t| t.escape.as_ref()).map(pair),
         undecided_width: undecided,
+        late: family.forward.outcome.kind == OutcomeKind::Undecided,
     }
 }
 

@@ -9,6 +9,7 @@
 //! irrational, while a phase must last a rational time: the phase is then made a little longer,
 //! and what happens past the exact end is left out of account.
 
+use super::classify::Ask;
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
 use crate::motion::phase::{Run, Setting, run};
@@ -17,6 +18,7 @@ use crate::motion::solids::Solids;
 use crate::motion::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
 };
+use crate::number::filter::with_filter;
 use crate::number::{Int, Poly, Rat};
 use crate::scene::{Motion, Scene};
 use crate::slice::{Slice, Time};
@@ -95,6 +97,8 @@ pub struct Ground<'a> {
     turning: Vec<Polygon>,
     /// When to give up, undecided.
     pub deadline: Option<Instant>,
+    /// Whether to do without certified doubles.
+    exact: bool,
 }
 
 impl<'a> Ground<'a> {
@@ -111,6 +115,15 @@ impl<'a> Ground<'a> {
                 .collect(),
             shapes,
             deadline,
+            exact: false,
+        }
+    }
+
+    /// Prepares a scene for what is asked.
+    pub(super) fn asked(scene: &'a Scene, ask: &Ask) -> Ground<'a> {
+        Ground {
+            exact: ask.exact,
+            ..Ground::new(scene, ask.deadline)
         }
     }
 
@@ -122,6 +135,20 @@ impl<'a> Ground<'a> {
     /// Runs one straight motion over the distance √`distance2` from `start`. The result is a
     /// trajectory of one phase whose clock begins there.
     pub fn escape(
+        &self,
+        start: &Start,
+        velocity: &Vec2,
+        distance2: &Rat,
+        friction: Option<&Rat>,
+    ) -> Trajectory {
+        let run = || self.run(start, velocity, distance2, friction);
+        if self.exact {
+            return with_filter(false, run).published();
+        }
+        run()
+    }
+
+    fn run(
         &self,
         start: &Start,
         velocity: &Vec2,

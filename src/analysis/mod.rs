@@ -17,6 +17,7 @@ pub mod draw;
 mod drive;
 pub mod escape;
 pub mod fix;
+mod force_document;
 pub mod forces;
 pub mod handbook;
 mod jet;
@@ -28,6 +29,7 @@ mod slope;
 pub mod stretch;
 pub mod summary;
 pub mod total;
+mod way;
 
 pub use classify::{Ask, Verdict};
 pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};

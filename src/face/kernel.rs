@@ -7,6 +7,7 @@
 //! of curves, and numbers proven equal are united, so that the second question costs nothing.
 
 use super::approx::{Approx, horner};
+use super::frames::Frame;
 use super::hash::FastMap;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
@@ -94,6 +95,11 @@ pub(crate) struct Kernel {
     pub(super) exact: FastMap<NumId, Algebraic>,
     /// Cells of 2^-FINE of those that had near neighbours; see `make_fine`.
     pub(super) fine: FastMap<NumId, Int>,
+    /// Points near clusters of numbers, and the distances of numbers from them; see `frames.rs`.
+    pub(super) frames: Vec<Frame>,
+    pub(super) frame_near: FastMap<(u64, usize), u32>,
+    pub(super) local: FastMap<NumId, (u32, Approx)>,
+    pub(super) framed: FastMap<(CurveId, u32), (Int, Int)>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
     pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,
@@ -207,17 +213,22 @@ impl Kernel {
     pub(crate) fn range(&self, c: CurveId, a: f64, b: f64) -> (f64, f64) {
         let all = (f64::NEG_INFINITY, f64::INFINITY);
         let Some((p, q)) = self.bernstein(c, a, b) else {
-            return all;
+            return in_parts(a, b, &|a, b| {
+                let (p, q) = self.bernstein(c, a, b)?;
+                enclose((0..3).map(|i| p[i].over(q[i])))
+            })
+            .unwrap_or(all);
         };
         enclose((0..3).map(|i| p[i].over(q[i]))).unwrap_or(all)
     }
 
     /// A hull of the curve over [a, b]: its box, and a strip along its chord, by the same form.
     pub(crate) fn hull(&self, c: CurveId, a: f64, b: f64) -> Hull {
-        let unknown = Hull::boxed([a, b, f64::NEG_INFINITY, f64::INFINITY]);
         let Some((p, q)) = self.bernstein(c, a, b) else {
-            return unknown;
+            let (lo, hi) = self.range(c, a, b);
+            return Hull::boxed([a, b, lo, hi]);
         };
+        let unknown = Hull::boxed([a, b, f64::NEG_INFINITY, f64::INFINITY]);
         let t: [Approx; 3] = std::array::from_fn(|i| p[i].over(q[i]));
         let Some((lo, hi)) = enclose(t.into_iter()) else {
             return unknown;
@@ -279,6 +290,32 @@ impl Kernel {
         let (l, r) = (self.exact(l).clone(), self.exact(r).clone());
         q.real_roots().iter().all(|z| *z < l || *z > r)
     }
+}
+
+/// An enclosure over [a, b] from those over its eighths, where the whole has none: 1 + u² has none, by its
+/// coefficients, over a long range.
+#[cold]
+pub(super) fn in_parts(
+    a: f64,
+    b: f64,
+    part: &dyn Fn(f64, f64) -> Option<(f64, f64)>,
+) -> Option<(f64, f64)> {
+    const PARTS: usize = 8;
+    if !(b - a).is_finite() {
+        return None;
+    }
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut from = a;
+    for i in 1..=PARTS {
+        let to = match i {
+            PARTS => b,
+            _ => (a + (b - a) * (i as f64 / PARTS as f64)).clamp(from, b),
+        };
+        let (l, h) = part(from, to)?;
+        (lo, hi) = (lo.min(l), hi.max(h));
+        from = to;
+    }
+    Some((lo, hi))
 }
 
 /// The least interval around all; None where that is not finite.

@@ -15,9 +15,11 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod approx;
+mod bands;
 mod boundary;
 mod compare;
 mod cylinder;
+mod frames;
 mod hash;
 mod island;
 mod isolate;
@@ -26,6 +28,7 @@ mod kernel;
 mod meet;
 mod merge;
 mod numbers;
+mod pencil;
 mod read;
 mod run;
 mod stops;

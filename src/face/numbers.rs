@@ -165,6 +165,9 @@ impl Kernel {
             self.unite(x, y);
             return Ordering::Equal;
         }
+        if let Some(order) = self.cmp_in_frames(x, y) {
+            return order;
+        }
         self.make_fine(x);
         self.make_fine(y);
         if let Some(order) = self.cells_apart(x, y) {
@@ -187,7 +190,7 @@ impl Kernel {
     }
 
     /// Whether y, a crossing, is x, by an integer test; false where that does not tell.
-    fn same_root(&self, x: NumId, y: NumId) -> bool {
+    pub(super) fn same_root(&self, x: NumId, y: NumId) -> bool {
         let Def::Cross(c, d) = self.nums[y as usize].def else {
             return false;
         };
@@ -205,7 +208,7 @@ impl Kernel {
             })
     }
 
-    fn unite(&mut self, x: NumId, y: NumId) {
+    pub(super) fn unite(&mut self, x: NumId, y: NumId) {
         let (lo, hi) = {
             let (a, b) = (&self.nums[x as usize], &self.nums[y as usize]);
             (a.lo.max(b.lo), a.hi.min(b.hi))

@@ -7,8 +7,10 @@
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
+use super::bands::Bands;
 use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
+use super::pencil::Pencil;
 use super::trace::Tracer;
 use crate::geometry::index::Hull;
 use std::cmp::Ordering;
@@ -80,7 +82,7 @@ impl Window {
 /// How many others a window at this depth may have before it is halved.
 fn crowd(depth: usize) -> usize {
     if depth < DEEPEST {
-        8 + depth * depth / 8
+        16 + depth * depth / 8
     } else {
         usize::MAX
     }
@@ -88,6 +90,11 @@ fn crowd(depth: usize) -> usize {
 
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
+
+/// How many items a search may find in vain, on average, before bands are made; and how many in all before that
+/// is asked.
+const VAIN: u64 = 16;
+const PATIENT: u64 = 4096;
 
 /// A window whose stops are known, and those as a range of `stops`.
 #[derive(Clone, Copy)]
@@ -269,20 +276,13 @@ impl Tracer<'_> {
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
-        let (items, k, stamp) = (self.items, &*self.k, &mut self.stamp);
+        let mut stamp = std::mem::take(&mut self.stamp);
+        let (items, k) = (self.items, &*self.k);
         let me = &items[item as usize];
-        let through = &mut self.through;
         let busy = self.busy.get(&item);
-        for &v in busy.into_iter().flatten() {
-            let mut at = self.vertices[v as usize].links;
-            while at != NONE {
-                let link = &self.links[at as usize];
-                through[link.item as usize] = (serial, v);
-                at = link.next;
-            }
-        }
-        let (mut few, mut tests) = (true, 0);
-        self.tree.query(hull, |b| {
+        let (mut few, mut tests, mut wasted) = (true, 0, 0);
+        let mut shared = Vec::new();
+        let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
             }
@@ -299,36 +299,63 @@ impl Tracer<'_> {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
                 if lo > hi || k.miss(c, d, lo, hi) {
+                    wasted += 1;
                     return true;
                 }
-                if busy.is_some()
-                    && let (when, v) = through[b as usize]
-                    && when == serial
-                    && k.miss_beside(c, d, lo, hi, self.vertices[v as usize].at.x)
+                if let Some(mine) = busy
+                    && let Some(theirs) = self.busy.get(&b)
                 {
-                    return true;
+                    shared.clear();
+                    let both = mine.iter().filter(|v| theirs.contains(v));
+                    shared.extend(both.map(|&v| self.vertices[v as usize].at.x));
+                    if !shared.is_empty() && k.miss_beside(c, d, lo, hi, &shared) {
+                        wasted += 1;
+                        return true;
+                    }
                 }
             }
             near.push(b);
             few = near.len() <= most;
             few
-        });
-        self.tests += tests;
-        few
-    }
-
-    /// Keeps in mind that many items pass through a vertex that knows all its arcs: pairs of them need not be
-    /// asked again what they do there.
-    pub(super) fn remember(&mut self, v: u32) {
-        let x = self.vertices[v as usize].at.x;
-        self.k.exact(x);
-        self.through.resize(self.items.len(), (0, NONE));
-        let mut at = self.vertices[v as usize].links;
-        while at != NONE {
-            let link = self.links[at as usize];
-            self.busy.entry(link.item).or_default().push(v);
-            at = link.next;
+        };
+        let pencil = self.pencil(item);
+        if let (Some((_, pencil)), Carrier::Graph(c)) = (pencil, me.carrier) {
+            let range = (hull.bounds[0], hull.bounds[1]);
+            pencil.query(k, c, range, &mut consider);
         }
+        if let Some((
+            _,
+            Pencil {
+                rest: Some(rest), ..
+            },
+        )) = pencil
+        {
+            rest.query(hull, &mut consider);
+        } else {
+            let pencil = pencil.map_or(NONE, |p| p.0);
+            let (bands, entries) = (&self.bands, self.tree.entries());
+            let wanted = |at: usize, node: &Hull| {
+                !node.apart(hull)
+                    && match me.carrier {
+                        Carrier::Graph(c) if at >= entries && !bands.is_empty() => {
+                            let from = node.bounds[0].max(hull.bounds[0]);
+                            let to = node.bounds[1].min(hull.bounds[1]);
+                            !bands.apart(k, at, c, from, to)
+                        }
+                        _ => true,
+                    }
+            };
+            self.tree.descend(wanted, |b| {
+                pencil != NONE && self.pencil_of[b as usize] == pencil || consider(b)
+            });
+        }
+        self.stamp = stamp;
+        self.tests += tests;
+        self.wasted += wasted;
+        if self.bands.is_empty() && self.wasted > VAIN * u64::from(serial) + PATIENT {
+            self.bands = Bands::new(self.k, self.items, &self.tree);
+        }
+        few
     }
 
     /// The remembered vertices inside an item, as hits on a window.

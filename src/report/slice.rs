@@ -85,7 +85,10 @@ pub struct FreeEdgeDocument {
     /// The other one.
     pub to: u32,
     /// Where F lies: `above` or `below` in θ, `before` or `after` where t is constant; one side or both.
-    #[schemars(length(min = 1, max = 2), inner(regex(pattern = "^(above|below|before|after)$")))]
+    #[schemars(
+        length(min = 1, max = 2),
+        inner(regex(pattern = "^(above|below|before|after)$"))
+    )]
     pub free: Vec<&'static str>,
     /// Who touches whom.
     #[serde(skip_serializing_if = "Option::is_none")]

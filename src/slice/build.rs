@@ -39,7 +39,6 @@ struct Break<K: Kernel> {
     point: Option<Rc<Named<K>>>,
 }
 
-/// P(u) given in u = tan(θ/2) as a polynomial of a chart's x (multiplied by x² > 0 there).
 fn in_chart<K: Kernel>(c: &[K::Coef; 3], chart: Chart) -> K::Poly {
     K::Poly::of_curve(c, chart == Chart::Back)
 }

@@ -35,7 +35,7 @@ pub(crate) struct SliceArgs {
     #[arg(long, value_name = "TIME,TAN_HALF", allow_hyphen_values = true)]
     reach: Vec<String>,
     /// Ask for the free intervals just after a time from the start of the phase (repeatable)
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     at: Vec<String>,
     /// Ask how the pawl would move from the orientation tan(θ/2) at the start of the phase (repeatable)
     #[arg(long, value_name = "TAN_HALF", allow_hyphen_values = true)]
@@ -71,9 +71,14 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
     .map_err(|e| super::misplanned(file, &e))?;
     let found = found.ok_or_else(|| {
         format!(
-            "--phase {}: the plan ran through {} phases",
+            "--phase {}: the plan ran through {} phase{}, counted from 0",
             which.phase,
-            trajectory.phases.len()
+            trajectory.phases.len(),
+            if trajectory.phases.len() == 1 {
+                ""
+            } else {
+                "s"
+            }
         )
     })?;
     Ok((found, trajectory))

@@ -502,7 +502,7 @@ mod tests {
                 // A push that is kept for a while slides along what it meets.
                 let push = [draw(), draw(), 2.0 * draw()];
                 for step in 0..80 {
-                    let part = [1.0, 0.3, 0.1][step % 3] * 0.3;
+                    let part = [0.3, 0.1, 0.03][step % 3];
                     let mut by = |k: usize| (push[k] + 0.4 * draw()) * part;
                     let shift = [0, 1].map(|k| by(k) * h.shift[k].get());
                     let mut next = at.clone();
