@@ -49,6 +49,15 @@ pub struct Patch<R = Rat> {
     pub flush: [(u32, u32); 2],
     /// In which charts it may be met within the phase.
     pub charts: [bool; 2],
+    /// For intervals: whether a wedge condition certainly ends exactly where the curve turns back in time (type B: the
+    /// pawl's edge is square to its arm) or goes to infinity (type A: the obstacle's edge runs along the
+    /// motion).
+    pub squared: bool,
+}
+
+/// Whether one of two numbers is certainly zero; asked of intervals alone, since nothing else needs to know.
+fn certainly_zero<R: Scalar>(x: impl Fn() -> [R; 2]) -> bool {
+    R::ROUGH && x().iter().any(|x| x.interval() == Interval::point(0.0))
 }
 
 /// R_θ a · n as a function of θ.
@@ -277,15 +286,14 @@ fn type_b<R: Scalar>(
     let a = &ring.vertices[i];
     let n = &oring.normals[j];
     let (q0, q1) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
-    let tau = q1 - q0;
-    let (ahead, behind) = (
-        &ring.vertices[ring.next(i)] - a,
-        &ring.vertices[ring.prev(i)] - a,
-    );
+    let tau = oring.edge(j);
+    let (ahead, behind) = (ring.edge(i), -&ring.edge(ring.prev(i)));
     let to_hinge = &frame.p0 - q0;
     let past = q1 - &frame.p0;
     let vt = frame.v.dot(&tau);
+    let squared = certainly_zero(|| [ahead.dot(a), behind.dot(a)]);
     Patch {
+        squared,
         contact: Contact::Obstacle {
             obstacle: o as u32,
             kind: ContactKind::B,
@@ -328,18 +336,17 @@ fn type_a<R: Scalar>(
 ) -> Patch<R> {
     let m = &ring.normals[i];
     let (a0, a1) = (&ring.vertices[i], &ring.vertices[ring.next(i)]);
-    let tau = a1 - a0;
+    let tau = ring.edge(i);
     let q = &oring.vertices[j];
     let w = q - &frame.p0;
     let e = m.dot(a0);
-    let (ahead, behind) = (
-        &oring.vertices[oring.next(j)] - q,
-        &oring.vertices[oring.prev(j)] - q,
-    );
+    let (ahead, behind) = (oring.edge(j), -&oring.edge(oring.prev(j)));
     // (w − v·t)·R m − e and (w − v·t)·R τ between a₀·τ and a₁·τ.
     let v = &frame.v;
     let minus_v = -v;
+    let squared = certainly_zero(|| [ahead.cross(v), behind.cross(v)]);
     Patch {
+        squared,
         contact: Contact::Obstacle {
             obstacle: o as u32,
             kind: ContactKind::A,

@@ -22,13 +22,21 @@ struct Edges<R> {
     /// Whether the solid lies to the left of the edges as listed.
     solid_left: OnceLock<bool>,
     hole: bool,
+    /// Of a ring of enclosures: for each edge whether its ends have equal x, equal y. Differences of enclosures do not
+    /// show it, and much of what happens by force is due to edges that run along an axis.
+    flat: Box<[[bool; 2]]>,
     normals: Box<[OnceLock<Box<[Vec2<R>]>>]>,
     /// A bit for each vertex.
     convex: Box<[OnceLock<u16>]>,
 }
 
 impl<R: Scalar> Edges<R> {
-    fn new(vertices: Arc<Vec<Vec2<R>>>, hole: bool, solid_left: Option<bool>) -> Arc<Edges<R>> {
+    fn new(
+        vertices: Arc<Vec<Vec2<R>>>,
+        hole: bool,
+        solid_left: Option<bool>,
+        flat: Box<[[bool; 2]]>,
+    ) -> Arc<Edges<R>> {
         let parts = vertices.len().div_ceil(PART);
         let known = OnceLock::new();
         if let Some(left) = solid_left {
@@ -38,6 +46,7 @@ impl<R: Scalar> Edges<R> {
             vertices,
             solid_left: known,
             hole,
+            flat,
             normals: (0..parts).map(|_| OnceLock::new()).collect(),
             convex: (0..parts).map(|_| OnceLock::new()).collect(),
         })
@@ -77,7 +86,15 @@ impl<R: Scalar> Edges<R> {
         let made = self.normals[k / PART].get_or_init(|| {
             let (v, left) = (&self.vertices, self.solid_left());
             let one = |k: usize| {
-                let right = (&v[(k + 1) % v.len()] - &v[k]).right_normal();
+                let mut edge = &v[(k + 1) % v.len()] - &v[k];
+                let [same_x, same_y] = self.flat.get(k).copied().unwrap_or_default();
+                if same_x {
+                    edge.x = R::zero();
+                }
+                if same_y {
+                    edge.y = R::zero();
+                }
+                let right = edge.right_normal();
                 if left { right } else { -&right }
             };
             self.part(k / PART).map(one).collect()
@@ -164,11 +181,16 @@ impl<R: Scalar> Ring<R> {
     /// Prepares a simple ring; `hole` means that the solid lies outside of it. O(1): whatever is exact is
     /// made of an edge when it is first asked for.
     pub fn new(vertices: Vec<Vec2<R>>, hole: bool) -> Ring<R> {
-        Ring::with(vertices, hole, None)
+        Ring::with(vertices, hole, None, Box::default())
     }
-    fn with(vertices: Vec<Vec2<R>>, hole: bool, solid_left: Option<bool>) -> Ring<R> {
+    fn with(
+        vertices: Vec<Vec2<R>>,
+        hole: bool,
+        solid_left: Option<bool>,
+        flat: Box<[[bool; 2]]>,
+    ) -> Ring<R> {
         let vertices = Arc::new(vertices);
-        let edges = Edges::new(vertices.clone(), hole, solid_left);
+        let edges = Edges::new(vertices.clone(), hole, solid_left, flat);
         Ring {
             vertices,
             normals: Normals(edges.clone()),
@@ -177,15 +199,30 @@ impl<R: Scalar> Ring<R> {
             rough: Arc::default(),
         }
     }
+    /// Edge k as a vector from vertex k to k + 1.
+    pub fn edge(&self, k: usize) -> Vec2<R> {
+        let n = &self.normals[k];
+        let left = Vec2::new(n.y.negated(), n.x.clone());
+        if self.normals.0.solid_left() {
+            left
+        } else {
+            -&left
+        }
+    }
     /// The ring in certified intervals, made once: normals when asked for, and no convexity, which intervals
     /// do not know.
     pub(super) fn rough(&self) -> &Ring<Enclosed> {
         self.rough.get_or_init(|| {
-            let edges = &self.normals.0;
+            let (edges, v) = (&self.normals.0, &self.vertices);
+            let flat = |k: usize| {
+                let (p, q) = (&v[k], &v[self.next(k)]);
+                [p.x == q.x, p.y == q.y]
+            };
             Box::new(Ring::with(
                 self.vertices.iter().map(Vec2::enclosed).collect(),
                 edges.hole,
                 Some(edges.solid_left()),
+                (0..v.len()).map(flat).collect(),
             ))
         })
     }

@@ -390,6 +390,14 @@ impl<K: Kernel> Slice<K> {
             t,
             on,
         };
+        if matches!(
+            (a.shape, b.shape),
+            (Shape::Graph { .. }, Shape::Graph { .. })
+        ) && self.apart(ia, ib)
+        {
+            filter::settled(Stage::Double);
+            return None;
+        }
         if self.coincide(ia, ib) {
             // Ends in order of time, each with its own handles.
             return [b.start(), b.end()]

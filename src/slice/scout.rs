@@ -64,6 +64,14 @@ fn twice(i: Interval) -> Interval {
     }
 }
 
+fn zero(e: &Enclosed) -> bool {
+    e.interval() == Interval::point(0.0)
+}
+
+fn constant(t: &Trig<Enclosed>) -> bool {
+    zero(&t.c) && zero(&t.s)
+}
+
 fn holds_zero(e: &Enclosed) -> bool {
     e.interval().contains(0.0)
 }
@@ -91,6 +99,9 @@ impl Breaks {
             return Some(());
         }
         let i = self.all().iter().position(|b| !b.below(&x))?;
+        if x.lo == x.hi && self.at[i] == x {
+            return Some(()); // both are this very double
+        }
         if i == 0 || !x.below(&self.at[i]) || self.len == MOST {
             return None;
         }
@@ -98,6 +109,17 @@ impl Breaks {
         self.at[i] = x;
         self.len += 1;
         Some(())
+    }
+    /// The roots of c·cos θ + s·sin θ: where an edge is flush, or a distance extreme. What runs along the axes has
+    /// them at θ = 0 or on a seam, exactly.
+    fn flush(&mut self, w: &Trig<Enclosed>, chart: Chart) -> Option<()> {
+        if zero(&w.s) && !holds_zero(&w.c) {
+            return Some(());
+        }
+        if zero(&w.c) && !holds_zero(&w.s) {
+            return self.root(Interval::point(0.0));
+        }
+        self.roots(&form(w, chart))
     }
     /// The roots of c + bx + ax².
     fn roots(&mut self, f: &Form) -> Option<()> {
@@ -171,12 +193,21 @@ pub(super) fn look(
     near: &Frame<Enclosed>,
     out: &mut Vec<Seen>,
 ) -> Option<()> {
-    ordinary(patch).then_some(())?;
     let end = near.duration.interval().hi;
+    if never(patch, end) {
+        return Some(());
+    }
+    if constant(&patch.f1) && zero(&patch.f1.k) {
+        return levels(patch, end, out);
+    }
+    ordinary(patch).then_some(())?;
     let v = &near.v;
     // Where a vertex meets a vertex: R a on the line through q − p₀ along v.
     let mut meet: [Option<Trig<Enclosed>>; 2] = [None, None];
     for (m, (a, q)) in meet.iter_mut().zip(&patch.ends) {
+        if zero(&a.x) && zero(&a.y) {
+            continue; // the hinge's own vertex meets no vertex anywhere but at the hinge
+        }
         if holds_zero(&a.x) && holds_zero(&a.y) {
             return None;
         }
@@ -206,12 +237,22 @@ pub(super) fn look(
         for m in meet.iter().flatten() {
             breaks.roots(&form(m, chart))?;
         }
-        for w in &view.wedge {
-            breaks.roots(w)?;
+        for w in &patch.wedge {
+            breaks.flush(w, chart)?;
         }
         let bend = bend(&view.f0, &view.f1);
-        breaks.roots(&bend)?;
-        breaks.roots(&view.f1)?;
+        if patch.squared {
+            // Where the curve turns back, or has its pole, a wedge ends by force.
+            if !constant(&patch.f1) {
+                breaks.roots(&bend)?;
+            }
+        } else if constant(&patch.f1) {
+            // Type B: dt/dθ vanishes with the derivative of f₀, and there are no poles.
+            breaks.flush(&patch.f0.derivative(), chart)?;
+        } else {
+            breaks.roots(&bend)?;
+            breaks.flush(&patch.f1, chart)?;
+        }
         for w in breaks.all().windows(2) {
             let x = Interval::point(w[0].hi.midpoint(w[1].lo));
             let (f0, f1) = (at(&view.f0, x), at(&view.f1, x));
@@ -252,12 +293,100 @@ pub(super) fn look(
     Some(())
 }
 
+/// A C-function f₀ + t·f₁.
+pub(super) type Function = (Trig<Enclosed>, Trig<Enclosed>);
+
+/// Whether two functions certainly vanish at no common point with x in a range: the sign of f₀g₁ − g₀f₁ is
+/// proven piece by piece.
+pub(super) fn apart(f: &Function, g: &Function, chart: Chart, [lo, hi]: [f64; 2]) -> bool {
+    let forms = [&f.0, &f.1, &g.0, &g.1].map(|t| form(t, chart));
+    fn pieces(forms: &[Form; 4], lo: f64, hi: f64, halvings: u32) -> bool {
+        let [f0, f1, g0, g1] = forms.each_ref().map(|p| at(p, Interval { lo, hi }));
+        if matches!((f0 * g1 - g0 * f1).sign(), Some(1 | -1)) {
+            return true;
+        }
+        let middle = lo.midpoint(hi);
+        halvings > 0
+            && pieces(forms, lo, middle, halvings - 1)
+            && pieces(forms, middle, hi, halvings - 1)
+    }
+    const HALVINGS: u32 = 4;
+    lo <= hi && pieces(&forms, lo, hi, HALVINGS)
+}
+
+/// The arcs of a vertex that moves along an edge: each at one orientation.
+fn levels(patch: &Patch<Enclosed>, end: f64, out: &mut Vec<Seen>) -> Option<()> {
+    let mut k = 0;
+    for chart in Chart::BOTH {
+        if !patch.charts[chart.index()] {
+            continue;
+        }
+        let f = form(&patch.f0, chart);
+        let mut breaks = Breaks::new();
+        breaks.roots(&f)?;
+        'root: for &x in &breaks.all()[1..breaks.len - 1] {
+            for w in &patch.wedge {
+                match at(&form(w, chart), x).sign()? {
+                    1 => {}
+                    -1 => continue 'root,
+                    _ => return None,
+                }
+            }
+            let (mut lo, mut hi) = (None, None);
+            for (l0, l1) in &patch.location {
+                let (l0, l1) = (at(&form(l0, chart), x), at(&form(l1, chart), x));
+                let t = -(l0 / l1);
+                match l1.sign()? {
+                    1 => lo = Some(t),
+                    -1 => hi = Some(t),
+                    _ => return None,
+                }
+            }
+            let (lo, hi) = (lo?, hi?);
+            if hi.below(&lo) {
+                continue;
+            }
+            let slope = (twice(f[2]) * x + f[1]).sign()?;
+            if slope == 0 || !lo.below(&hi) {
+                return None;
+            }
+            filter::settled(Stage::Double);
+            if hi.hi >= 0.0 && lo.lo <= end {
+                out.push(Seen {
+                    contact: patch.contact,
+                    chart,
+                    shape: Shape::Level,
+                    side: if slope > 0 { Side::Above } else { Side::Below },
+                    ends: [(x, lo), (x, hi)],
+                    at_rest: Interval::all(),
+                    k,
+                });
+            }
+            k += 1;
+        }
+    }
+    Some(())
+}
+
+/// Whether a contact at the hinge itself, which happens at one time, certainly does not happen: not within the
+/// phase, or not on the edge.
+fn never(patch: &Patch<Enclosed>, end: f64) -> bool {
+    let (f0, f1) = (&patch.f0, &patch.f1);
+    if !constant(f0) || !constant(f1) || holds_zero(&f1.k) {
+        return false;
+    }
+    let t = -(f0.k.interval() / f1.k.interval());
+    let beyond = |(l0, l1): &(Trig<Enclosed>, Trig<Enclosed>)| {
+        constant(l0) && constant(l1) && (l0.k.interval() + t * l1.k.interval()).sign() == Some(-1)
+    };
+    t.hi < 0.0 || t.lo > end || patch.location.iter().any(beyond)
+}
+
 /// Whether f₀ and f₁ certainly have no common root, and f₁ does not vanish throughout: then the patch
 /// is made of graphs alone.
 fn ordinary(patch: &Patch<Enclosed>) -> bool {
     let (f0, f1) = (&patch.f0, &patch.f1);
-    let zero = |e: &Enclosed| e.interval() == Interval::point(0.0);
-    if zero(&f1.c) && zero(&f1.s) {
+    if constant(f1) {
         // Type B: f₁ is a constant.
         return !holds_zero(&f1.k) && !(holds_zero(&f0.c) && holds_zero(&f0.s));
     }

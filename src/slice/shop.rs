@@ -8,7 +8,7 @@
 use super::arc::{Arc, ArcId, Curve, CurveId, Exact};
 use super::build::Builder;
 use super::predicates::CrossCache;
-use super::scout::{self, Seen};
+use super::scout::{self, Function, Seen};
 use crate::contact::{Chart, Frame, ObstacleShape, Pair, Patch, PawlShape, pairs_within};
 use crate::kernel::{Filtered, Kernel, Position};
 use crate::number::Scalar;
@@ -25,6 +25,9 @@ pub struct Slice<K: Kernel = Filtered> {
     by_chart: [Vec<ArcId>; 2],
     /// The patch that each arc was cut from (none for a limit stop).
     patch_of: Vec<Option<u32>>,
+    /// Per patch its C-function in certified doubles, where doubles may settle anything; that of the phase
+    /// as it was first run, since only common zeros are looked for.
+    rough: Rc<[Function]>,
     pub(super) shop: Rc<Shop<K>>,
     pub(super) crossings: Mutex<CrossCache<K>>,
 }
@@ -44,12 +47,14 @@ impl<K: Kernel> Slice<K> {
         let mut pairs: Vec<(Pair, [bool; 2], Option<std::ops::Range<usize>>)> = Vec::new();
         let mut seen: Vec<Seen> = Vec::new();
         let near = K::ENCLOSES.then(|| frame.enclosed());
+        let mut roughs: Vec<Function> = Vec::new();
         pairs_within(&frame, pawl, obstacles, &mut |pair, rough| {
             let (Some(near), Some(rough)) = (&near, rough) else {
                 pairs.push((pair, [true; 2], None));
                 return;
             };
             let from = seen.len();
+            let known = pairs.len();
             match scout::look(&rough, near, &mut seen) {
                 Some(()) if seen.len() == from => {}
                 Some(()) => pairs.push((pair, rough.charts, Some(from..seen.len()))),
@@ -57,6 +62,9 @@ impl<K: Kernel> Slice<K> {
                     seen.truncate(from);
                     pairs.push((pair, rough.charts, None));
                 }
+            }
+            if pairs.len() > known {
+                roughs.push((rough.f0, rough.f1));
             }
         });
         let end = Scalar::interval(&frame.duration).hi;
@@ -91,12 +99,13 @@ impl<K: Kernel> Slice<K> {
                 patch_of.push(None);
             }
         }
-        Slice::of(frame, arcs, patch_of, shop)
+        Slice::of(frame, arcs, patch_of, roughs.into(), shop)
     }
     fn of(
         frame: Frame<K::Num>,
         arcs: Vec<Arc<K>>,
         patch_of: Vec<Option<u32>>,
+        rough: Rc<[Function]>,
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
         let mut by_chart = [Vec::new(), Vec::new()];
@@ -108,6 +117,7 @@ impl<K: Kernel> Slice<K> {
             arcs,
             by_chart,
             patch_of,
+            rough,
             shop,
             crossings: Mutex::default(),
         }
@@ -119,7 +129,9 @@ impl<K: Kernel> Slice<K> {
         arcs: Vec<Arc<K>>,
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
-        Slice::of(frame, arcs, self.patch_of.clone(), shop)
+        // With time turned round f₀g₁ − g₀f₁ changes its sign and nothing else.
+        let rough = self.rough.clone();
+        Slice::of(frame, arcs, self.patch_of.clone(), rough, shop)
     }
     /// Which patch an arc was cut from; None for a limit stop.
     pub(super) fn patch_id(&self, id: ArcId) -> Option<u32> {
@@ -140,6 +152,16 @@ impl<K: Kernel> Slice<K> {
     /// The arcs of one chart.
     pub fn arcs_in(&self, chart: Chart) -> &[ArcId] {
         &self.by_chart[chart.index()]
+    }
+    /// Whether doubles prove that two graphs of one chart do not meet.
+    pub(super) fn apart(&self, a: ArcId, b: ArcId) -> bool {
+        let of = |id: ArcId| self.rough.get(self.patch_of[id as usize]? as usize);
+        let (Some(f), Some(g)) = (of(a), of(b)) else {
+            return false;
+        };
+        let (x, y) = (self.arc(a), self.arc(b));
+        let range = [x.x_span.lo.max(y.x_span.lo), x.x_span.hi.min(y.x_span.hi)];
+        scout::apart(f, g, x.chart, range)
     }
     /// The patch an arc was cut from; None for a limit stop.
     pub fn patch(&self, id: ArcId) -> Option<&Patch<K::Num>> {
