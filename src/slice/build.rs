@@ -412,7 +412,7 @@ impl<K: Kernel> Builder<K> {
                     side,
                     Exact {
                         curve,
-                        branch: branch,
+                        branch,
                         lo: w[0].clone(),
                         hi: w[1].clone(),
                     },
