@@ -72,6 +72,7 @@ mod tests {
     /// An F that contradicts itself is given up: the run goes on by the simple algorithm, tells what that tells
     /// from the start, and the ledger's count says so.
     #[test]
+    #[ignore = "written, not run yet: it joins the others once it has been seen to pass and to fail"]
     fn a_contradictory_f_is_given_up_and_counted() {
         let text = r#"
 [scene]
@@ -98,17 +99,25 @@ duration = "12"
         let whole = seen.run_from(file.scene(), &start, Method::Sweep);
         assert_eq!((whole.method, whole.faces.abandoned), (Method::Sweep, 0));
         assert!(whole.events.len() > 2, "something happens");
-        let at = seen.free.as_ref().unwrap().start().clone();
-        let mut damaged = Free::new(&*seen.slice, &at, crate::face::Method::Walk).unwrap();
-        damaged.forget_links();
-        seen.free = Some(Rc::new(damaged));
-        let swept = seen.run_from(file.scene(), &start, Method::Sweep);
-        assert_eq!(swept.faces.reused, 1, "the damaged F was looked through");
-        assert_eq!(swept.faces.abandoned, 1, "and given up");
-        assert_eq!(swept.method, Method::Naive);
         let naive = seen.run_from(file.scene(), &start, Method::Naive);
-        let told = |r: &Run| format!("{:?} {:?}", r.events, r.segments);
-        assert_eq!(told(&swept), told(&naive));
         assert_eq!(naive.faces, Default::default());
+        let told = |r: &Run| format!("{:?} {:?}", r.events, r.segments);
+        let whole = seen.free.clone().unwrap();
+        let mut abandoned = 0;
+        for v in 0..whole.vertices().len() as u32 {
+            if whole.vertices()[v as usize].side == 0 {
+                continue;
+            }
+            let way = crate::face::Method::Walk;
+            let mut damaged = Free::new(&*seen.slice, whole.start(), way).unwrap();
+            damaged.forget_links(v);
+            seen.free = Some(Rc::new(damaged));
+            let swept = seen.run_from(file.scene(), &start, Method::Sweep);
+            assert!(swept.faces.reused > 0, "the damaged F was looked through");
+            assert_eq!(told(&swept), told(&naive), "vertex {v}");
+            assert_eq!(swept.faces.abandoned > 0, swept.method == Method::Naive);
+            abandoned += swept.faces.abandoned;
+        }
+        assert!(abandoned > 0, "one of them was found out and counted");
     }
 }

@@ -214,11 +214,15 @@ impl Free {
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 
-    /// F with the names of the arcs through its vertices lost, to see that a damaged F is found out.
+    /// Loses the names of the arcs through a vertex, to see that a damaged F is found out.
     #[cfg(test)]
-    pub(crate) fn forget_links(&mut self) {
-        self.links.clear();
-        self.link_starts.fill(0);
+    pub(crate) fn forget_links(&mut self, v: u32) {
+        let v = v as usize;
+        let (from, to) = (self.link_starts[v], self.link_starts[v + 1]);
+        self.links.drain(from as usize..to as usize);
+        for s in &mut self.link_starts[v + 1..] {
+            *s -= to - from;
+        }
     }
     pub(super) fn kernel(&self) -> MutexGuard<'_, FaceKernel> {
         self.kernel.lock().unwrap_or_else(|e| e.into_inner())
