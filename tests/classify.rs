@@ -22,13 +22,15 @@ fn scene(name: &str) -> Scene {
     }
 }
 
-const ASK: Ask = Ask {
-    deadline: None,
-    critical: true,
-};
+fn ask() -> Ask {
+    Ask {
+        critical: true,
+        ..Ask::default()
+    }
+}
 
 fn decided(scene: &Scene) -> Relative {
-    relative(scene, &ASK).unwrap()
+    relative(scene, &ask()).unwrap()
 }
 
 const FAMILIES: [(&str, Verdict); 14] = [
@@ -257,7 +259,7 @@ fn the_deciding_motion_can_be_simulated() {
         if s.motions.contains(&snapfit::scene::Motion::Reverse) {
             continue;
         }
-        let (doc, way) = classify_with_way(&s, &ASK).unwrap();
+        let (doc, way) = classify_with_way(&s, &ask()).unwrap();
         let (v, lasts) = way.unwrap();
         let run = simulate(&with_motion(&s, &v, &lasts), &Default::default()).unwrap();
         let completes = run.outcome.kind == OutcomeKind::Completed;

@@ -263,3 +263,153 @@ fn render_writes_one_picture() {
     assert_eq!(stdout(&snapfit(&["render", PINS, "--svg"])), file);
     assert!(file.starts_with("<svg "));
 }
+
+/// Paths that cannot be written are told before any work, in words.
+#[test]
+fn outputs_are_looked_at_first() {
+    let dir = folder("outputs");
+    let within = dir.join("absent").join("x.json");
+    for (path, says) in [
+        (dir.to_str().unwrap(), "this is a directory"),
+        (within.to_str().unwrap(), "there is no directory"),
+    ] {
+        for verb in [
+            vec!["simulate", PINS, "--out", path],
+            vec!["forces", PINS, "--svg", path],
+            vec!["classify", PINS, "--svg", path],
+            vec!["classify", PINS, "--escape", path],
+            vec!["render", PINS, "--svg", path],
+        ] {
+            let output = snapfit(&verb);
+            assert_eq!(output.status.code(), Some(2), "{verb:?}");
+            assert!(
+                stderr(&output).contains(says),
+                "{verb:?}: {}",
+                stderr(&output)
+            );
+            assert!(output.stdout.is_empty(), "{verb:?}");
+        }
+    }
+    let output = snapfit(&["simulate", dir.to_str().unwrap()]);
+    assert!(stderr(&output).contains("this is a directory"));
+}
+
+/// A name of --set that leads nowhere is answered with the one that was meant.
+#[test]
+fn overrides_suggest_what_was_meant() {
+    let text = fs::read_to_string(PINS).unwrap();
+    let name = text
+        .split("[[pawl]]")
+        .nth(1)
+        .and_then(|p| p.split("name = \"").nth(1))
+        .and_then(|p| p.split('"').next())
+        .unwrap();
+    for (set, meant) in [
+        (format!("pawl.{name}x.stiffness=2"), name),
+        (format!("pawl.{name}.stifness=2"), "stiffness"),
+        ("scen.friction=1".to_owned(), "scene"),
+    ] {
+        let output = snapfit(&["simulate", PINS, "--set", &set]);
+        assert_eq!(output.status.code(), Some(2), "{set}");
+        let said = stderr(&output);
+        assert!(said.contains(&format!("did you mean `{meant}`?")), "{said}");
+    }
+}
+
+/// A plan that a limit of time stops leaves the verdict and the forces undecided.
+#[test]
+fn verdicts_and_forces_say_when_the_time_is_up() {
+    for verb in ["classify", "forces"] {
+        let output = snapfit(&[verb, PINS, "--time-limit", "0"]);
+        assert_eq!(output.status.code(), Some(3), "{verb}");
+        let _: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    }
+}
+
+/// Without its seconds a result is the same every time.
+#[test]
+fn results_without_times_are_the_same_bytes() {
+    let run = || snapfit(&["simulate", PINS, "--no-times"]).stdout;
+    assert_eq!(run(), run());
+    let text = String::from_utf8(run()).unwrap();
+    assert!(!text.contains("seconds"));
+    assert!(stdout(&snapfit(&["simulate", PINS])).contains("run_seconds"));
+}
+
+/// The reference arithmetic finds the same class and the same forces.
+#[test]
+fn the_reference_gives_the_same_verdicts_and_forces() {
+    for name in ["examples/handbook-vertex.toml", "examples/bayer-hook.toml"] {
+        let file = format!("{}/{name}", env!("CARGO_MANIFEST_DIR"));
+        for verb in ["classify", "forces"] {
+            let by = |how: &str| snapfit(&[verb, &file, "--arithmetic", how]).stdout;
+            assert!(by("exact") == by("filtered"), "{name} {verb}");
+        }
+    }
+}
+
+/// A file of another kind is named as what it is, in one line.
+#[test]
+fn a_file_of_another_kind_is_named() {
+    let folder = folder("guise");
+    let structure = folder.join("s.toml");
+    let at = |p: &PathBuf| p.to_string_lossy().into_owned();
+    let made = snapfit(&[
+        "generate",
+        "grid",
+        "--bodies",
+        "4",
+        "--out",
+        &at(&structure),
+    ]);
+    assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    let result = folder.join("r.json");
+    snapfit(&["simulate", PINS, "--out", &at(&result)]);
+    for (verb, file, word) in [
+        ("simulate", at(&structure), "this is a structure"),
+        ("flex", PINS.to_owned(), "this is a scene"),
+        ("simulate", at(&result), "this is a result"),
+        ("flex", at(&result), "this is a result"),
+    ] {
+        let output = snapfit(&[verb, &file]);
+        assert_eq!(output.status.code(), Some(2), "{verb} {file}");
+        let said = stderr(&output);
+        assert!(said.contains(word) && said.lines().count() == 1, "{said}");
+    }
+}
+
+#[test]
+fn negative_options_are_refused_in_words() {
+    let output = snapfit(&["simulate", PINS, "--time-limit", "-1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("not negative"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// No input is written over, and no two results go to one file.
+#[test]
+fn inputs_and_results_are_spared() {
+    let folder = folder("spared");
+    let scene = folder.join("s.toml");
+    fs::copy(PINS, &scene).unwrap();
+    let before = fs::read(&scene).unwrap();
+    let (scene, other) = (
+        scene.to_string_lossy().into_owned(),
+        folder.join("x").to_string_lossy().into_owned(),
+    );
+    for args in [
+        &["trade", &scene, "--fast", "-o", &scene][..],
+        &["trade", &scene, "--fast", "--svg", &scene],
+        &["forces", &scene, "--svg", &scene],
+        &["forces", &scene, "--svg", &other, "-o", &other],
+        &["classify", &scene, "--svg", &other, "-o", &other],
+    ] {
+        let output = snapfit(args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&output).contains("lost"), "{}", stderr(&output));
+    }
+    assert_eq!(fs::read(&scene).unwrap(), before);
+}

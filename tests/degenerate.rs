@@ -6,17 +6,10 @@
 
 #[path = "common/hand.rs"]
 mod hand;
-use hand::{q, scene, tell, tell_scene, two_to};
+use hand::{ARM, FLOOR, on_floor, q, scene, tell, tell_scene, two_to};
 use snapfit::geometry::Vec2;
 use snapfit::number::Rat;
 use snapfit::scene::{Motion, Scene};
-
-const FLOOR: &str = "floor: -20,-1 20,-1 20,0 -20,0\n"; // edge 2 is the top, y = 0
-const ARM: &str = "pawl p at 0,6: 0,0 3,-4 4,-1\n"; // tip 1
-
-fn on_floor(rest: &str) -> hand::Told {
-    tell(&(FLOOR.to_owned() + rest))
-}
 
 /// A scene p ↦ k·p + shift, at the same speed in its own units: times and angles stay.
 fn moved(mut s: Scene, k: &Rat, shift: &Vec2) -> Scene {

@@ -14,15 +14,9 @@
 
 #[path = "common/hand.rs"]
 mod hand;
-use hand::tell;
+use hand::{ARM, on_floor, tell};
 
-const FLOOR: &str = "floor: -20,-1 20,-1 20,0 -20,0\n"; // edge 2 is the top, y = 0
-const ARM: &str = "pawl p at 0,6: 0,0 3,-4 4,-1\n"; // tip 1
 const HOOK: &str = "pawl p at 0,-2: 4,3 5,5 3,5\n"; // tip 0
-
-fn on_floor(rest: &str) -> hand::Told {
-    tell(&(FLOOR.to_owned() + rest))
-}
 
 // ── (i) translational collision and release ─────────────────────────────────────────────────
 

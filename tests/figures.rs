@@ -571,23 +571,28 @@ fn fig_15_one_constraint_replaces_the_other() {
     narrates(&told, "right", "phase-end\n plan-end");
 }
 
-/// Fig. 17: at one exact instant (1) f_i leaves its applicability region, (2) f_j enters its own,
-/// (3) f_j becomes zero, while f_i is. All four are exactly zero at t = 15/2, u = 1/7; and the two
-/// regions' ends bear one name, so that no arithmetic is needed to see it (§8.4.2).
-#[test]
-fn fig_17_three_zeros_are_one_instant() {
-    let s = own("fig15-diagonal");
+/// The first pawl's frame in the first phase.
+fn first_frame(s: &Scene) -> Frame {
     let Motion::Translate {
         velocity, duration, ..
     } = &s.motions[0]
     else {
         panic!()
     };
-    let frame = Frame {
+    Frame {
         p0: s.pawls[0].hinge.clone(),
         v: velocity.clone(),
         duration: duration.clone().unwrap(),
-    };
+    }
+}
+
+/// Fig. 17: at one exact instant (1) f_i leaves its applicability region, (2) f_j enters its own,
+/// (3) f_j becomes zero, while f_i is. All four are exactly zero at t = 15/2, u = 1/7; and the two
+/// regions' ends bear one name, so that no arithmetic is needed to see it (§8.4.2).
+#[test]
+fn fig_17_three_zeros_are_one_instant() {
+    let s = own("fig15-diagonal");
+    let frame = first_frame(&s);
     let obstacles: Vec<ObstacleShape> = s.obstacles.iter().map(ObstacleShape::new).collect();
     let all = patches(&frame, &PawlShape::new(&s.pawls[0]), &obstacles);
     let of = |vertex: u32| -> &Patch {
@@ -654,17 +659,7 @@ fn a_vanishing_leading_coefficient_means_pi() {
             a + 1,
             b + 4
         ));
-        let Motion::Translate {
-            velocity, duration, ..
-        } = &s.motions[0]
-        else {
-            panic!()
-        };
-        let frame = Frame {
-            p0: s.pawls[0].hinge.clone(),
-            v: velocity.clone(),
-            duration: duration.clone().unwrap(),
-        };
+        let frame = first_frame(&s);
         let shapes: Vec<ObstacleShape> = s.obstacles.iter().map(ObstacleShape::new).collect();
         for p in patches(&frame, &PawlShape::new(&s.pawls[0]), &shapes) {
             let (a0, a1) = (

@@ -2,8 +2,12 @@
 //! whose sliding direction is read off finite differences of the motion itself.
 #![allow(clippy::unwrap_used)]
 
+mod common;
+
+use common::count;
 use snapfit::analysis::bound::Bound;
 use snapfit::analysis::escape::Ground;
+use snapfit::analysis::forces::SegmentForces;
 use snapfit::analysis::peak::{Instant, Peak, force, torque};
 use snapfit::analysis::stretch::{Stretch, stretches};
 use snapfit::analysis::{Ask, ForcesDocument, Wish, forces};
@@ -29,6 +33,14 @@ const SCENES: [&str; 7] = [
     "tests/data/total-fig7e.toml",
     "tests/data/two-pawls.toml",
     "tests/data/peg.toml",
+];
+
+const MORE: [&str; 5] = [
+    "examples/bayer-hook.toml",
+    "examples/rabbit-clip.toml",
+    "examples/escapement-rack.toml",
+    "examples/ratchet-rack.toml",
+    "tests/data/total-fig7b.toml",
 ];
 
 fn value(r: &Rat) -> f64 {
@@ -166,6 +178,56 @@ fn peaks_hold_against_dense_sampling() {
     // Prop. A.1 says that there are none of these.
     assert!(inside > 0, "peaks inside a stretch");
     assert!(checked > 20);
+}
+
+/// The same against samples enclosed to 30 digits, by the vectors of the balance: none is higher
+/// than a peak's upper bound, and the highest comes near its lower one. Exact comparisons.
+#[test]
+fn peaks_hold_against_samples_in_high_precision() {
+    let samples = u32::try_from(count(10_000)).unwrap();
+    let mut met = 0;
+    for name in SCENES.iter().chain(&MORE) {
+        let mut s = scene(name);
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(3));
+        });
+        let wish = Wish {
+            digits: 30,
+            samples,
+            ..Wish::default()
+        };
+        let doc = forces(&s, &wish, &Ask::default()).unwrap();
+        for phase in &doc.root.as_ref().unwrap().phases {
+            for at in &phase.history {
+                for p in &at.pawls {
+                    let pawl = doc.pawls.iter().find(|q| q.name == p.pawl).unwrap();
+                    let [lo, _] = ends(&p.force).unwrap();
+                    let [twist, _] = ends(&p.torque.clone()).unwrap();
+                    // The segment at hand, which the instant is inside.
+                    let t = at.time.value.unwrap();
+                    let mut own = pawl.segments.iter().filter(|q| {
+                        Some(q.phase) == phase.phase
+                            && q.from.value.unwrap() <= t
+                            && t <= q.to.value.unwrap()
+                    });
+                    let seg = own.next().unwrap();
+                    let beside = own.next();
+                    let most = |f: fn(&SegmentForces) -> &Bound| {
+                        let of = |q: &SegmentForces| ends(f(q)).map(|e| e[1].clone());
+                        let a = of(seg)?;
+                        Some(beside.map_or(Some(a.clone()), of)?.max(a))
+                    };
+                    met += 1;
+                    assert!(most(|q| &q.force).is_none_or(|m| lo <= m), "{name} {t}");
+                    assert!(
+                        most(|q| &q.torque).is_none_or(|m| twist.abs() <= m),
+                        "{name} {t}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(met > 3 * samples, "{met}");
 }
 
 /// More digits, narrower, and never apart.
@@ -371,6 +433,64 @@ fn the_handbooks_example_parts_by_the_arms_turn() {
     let held = held.peak.unwrap();
     assert_eq!(ends(&held.resistance), None);
     assert!(ends(&held.help).is_some());
+}
+
+/// Bayer's hook with other slopes: in by `tan_in`, out by `tan_out`.
+fn bayer(tan_in: &Rat, tan_out: &Rat, mu: &Rat) -> Scene {
+    let mut s = scene("examples/bayer-hook.toml");
+    s.friction = Some(mu.clone());
+    let catch = &mut s.obstacles[0].vertices;
+    let tip = catch[5].y.clone();
+    let wide = Rat::frac(29, 10);
+    catch[4].y = &tip + &(&wide / tan_in);
+    catch[6].y = &tip - &(&wide / tan_out);
+    s
+}
+
+/// The whole table of the handbook's formula beside the model, W in units of kθ/L at the full
+/// deflection: slope, μ, the handbook's value, the model's way in and way out.
+#[test]
+fn the_handbooks_table_is_found_again() {
+    let p = 4876.0 * (2.4f64 / 19.0).asin() / 19.0;
+    for (tan, mu, handbook, into, out) in [
+        ("0.577350", "0.6", 1.801, 1.477, 2.356),
+        ("1", "0.6", 4.000, 2.672, 8.218),
+        ("1.191754", "0.6", 6.288, 3.520, 31.80),
+        ("1", "0.3", 1.857, 1.514, 2.452),
+        ("1", "0.2", 1.500, 1.270, 1.869),
+    ] {
+        let read = |text: &str| snapfit::number::literal::parse(text).unwrap();
+        let slope = read(tan);
+        let doc = asked(&bayer(&slope, &slope, &read(mu)), 9, 0);
+        for (phase, model) in [(0, into), (1, out)] {
+            let found = doc.pawls[0].segments.iter().find_map(|s| {
+                let h = s.handbook.as_ref()?;
+                let here = s.phase == phase && h.slope.as_deref() == Some(&slope.to_string());
+                // The steeper way: on the other face the pawl is let down, not lifted.
+                (here && middle(h.model.as_ref()?) > 0.0).then(|| h.clone())
+            });
+            let h = found.unwrap();
+            let [w, m] = [&h.formula, &h.model].map(|b| middle(b.as_ref().unwrap()) / p);
+            assert!((w / handbook - 1.0).abs() < 5e-4, "{tan} {mu}: {w}");
+            assert!((m / model - 1.0).abs() < 5e-4, "{tan} {mu} {phase}: {m}");
+        }
+    }
+}
+
+/// The band in which the handbook lets go and the model holds: from cot(φ + θ) = 1.2698 (51.78°),
+/// not from 1/μ (59.04°) on.
+#[test]
+fn removal_locks_earlier_than_the_handbook_says() {
+    let mu = Rat::frac(3, 5);
+    for (tan, outcome) in [
+        (Rat::frac(12697, 10_000), "completed"),
+        (Rat::frac(12699, 10_000), "stuck"),
+        (Rat::frac(16, 10), "stuck"),
+    ] {
+        let s = bayer(&Rat::frac(15, 26), &tan, &mu);
+        let doc = forces(&s, &Wish::default(), &Ask::default()).unwrap();
+        assert_eq!(doc.outcome, outcome, "{tan}");
+    }
 }
 
 /// The digits asked for bound both the width and the length of what is printed.

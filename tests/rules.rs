@@ -6,17 +6,11 @@
 
 #[path = "common/hand.rs"]
 mod hand;
-use hand::{scene, tell};
+use hand::{ARM, FLOOR, on_floor, scene, tell};
 use snapfit::motion::{Options, OutcomeKind, simulate};
 use snapfit::scene::read_scene;
 
-const FLOOR: &str = "floor: -20,-1 20,-1 20,0 -20,0\n"; // edge 2 is the top, y = 0
-const ARM: &str = "pawl p at 0,6: 0,0 3,-4 4,-1\n"; // tip 1
 const RIDGE: &str = "ridge: -6,-3 6,-3 0,0\n"; // edge 1 falls to the right, edge 2 rises from the left
-
-fn on_floor(rest: &str) -> hand::Told {
-    tell(&(FLOOR.to_owned() + rest))
-}
 
 // ── Component ───────────────────────────────────────────────────────────────────────────────
 

@@ -12,7 +12,7 @@ use super::escape::{Ground, Start};
 use super::peak::{Peak, Peaked, force, higher};
 use super::stretch::{Stretch, stretches};
 use crate::geometry::Vec2;
-use crate::motion::{Options, OutcomeKind, PlanError, Trajectory, simulate};
+use crate::motion::{Arithmetic, Method, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use crate::number::{Algebraic, Rat};
 use crate::scene::{Motion, Scene};
 use std::time::Instant;
@@ -95,6 +95,27 @@ pub struct Ask {
     pub deadline: Option<Instant>,
     /// Compute critical coefficients of friction, and the force at which a direction lets go.
     pub critical: bool,
+    /// Decide every motion without certified doubles: the reference, with the same answers. (The
+    /// proofs for whole arcs of directions are in double intervals all the same.)
+    pub exact: bool,
+    /// Which algorithm runs the plan. The ways out, one short phase each, look at every arc.
+    pub method: Method,
+}
+
+impl Ask {
+    /// How to simulate.
+    pub fn options(&self) -> Options<'static> {
+        Options {
+            deadline: self.deadline,
+            arithmetic: if self.exact {
+                Arithmetic::Exact
+            } else {
+                Arithmetic::Filtered
+            },
+            method: self.method,
+            ..Options::default()
+        }
+    }
 }
 
 /// The velocities of the family: the scene's, or the reverse of the plan's last phase that is no
@@ -119,12 +140,8 @@ pub fn family(scene: &Scene, plan: &Trajectory) -> Option<(Vec<Vec2>, Rat)> {
 /// # Errors
 /// [`PlanError`] where the plan asks for what cannot be.
 pub fn relative(scene: &Scene, ask: &Ask) -> Result<Relative, PlanError> {
-    let options = Options {
-        deadline: ask.deadline,
-        ..Options::default()
-    };
-    let forward = simulate(scene, &options)?;
-    let ground = Ground::new(scene, ask.deadline);
+    let forward = simulate(scene, &ask.options())?;
+    let ground = Ground::asked(scene, ask);
     let start = Start::after(&forward);
     let mut out = Relative {
         class: None,

@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
-use super::escape::{Ground, lasting};
+use super::escape::{Ground, just_past, lasting};
 use super::peak::Peak;
 use super::total::{Arc, Flip, Sample, Total, total};
 use crate::contact::{Contact, ContactKind};
@@ -57,6 +57,9 @@ pub struct ClassifyDocument {
     pub escape: Option<[Num; 2]>,
     /// Radians of directions not proven at least as firmly blocked as the class.
     pub undecided_width: Option<f64>,
+    /// Whether a limit of time stopped the plan itself.
+    #[serde(skip)]
+    late: bool,
 }
 
 /// One direction of the family.
@@ -215,7 +218,7 @@ impl ClassifyDocument {
                 .directions
                 .iter()
                 .any(|d| d.outcome.kind == "undecided");
-        open || self.undecided_width.is_some_and(|w| w > 0.0)
+        open || self.late || self.undecided_width.is_some_and(|w| w > 0.0)
     }
 }
 
@@ -239,7 +242,7 @@ pub fn classify_with_way(
     let family = relative(scene, ask)?;
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
-        let ground = Ground::new(scene, ask.deadline);
+        let ground = Ground::asked(scene, ask);
         total(&ground, start, family.class)
     });
     let weakest = family.directions.iter().min_by_key(|d| d.verdict);
@@ -260,12 +263,15 @@ pub fn classify_with_way(
 /// A rational duration in which a direction's motion has run its course.
 fn run_time(d: &Direction) -> Rat {
     let end = &d.run.outcome.time;
-    match end.as_rat() {
-        // A little longer, where it ends for another reason than its length.
-        Some(t) if d.run.outcome.kind == OutcomeKind::Completed => t.clone(),
-        Some(t) => t + &Rat::one(),
-        None if d.run.outcome.kind == OutcomeKind::Completed => Rat::from_f64(end.interval().hi),
-        None => Rat::from_f64(end.interval().hi) + Rat::frac(1, 1024),
+    let lasts = match end.as_rat() {
+        Some(t) => t.clone(),
+        None => just_past(end.exact()),
+    };
+    // A little longer, where it ends for another reason than its length.
+    match d.run.outcome.kind {
+        OutcomeKind::Completed => lasts,
+        _ if lasts.sign() > 0 => lasts * Rat::frac(17, 16),
+        _ => Rat::one(),
     }
 }
 
@@ -361,6 +367,7 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
         }),
         escape: circle.and_then(|t| t.escape.as_ref()).map(pair),
         undecided_width: undecided,
+        late: family.forward.outcome.kind == OutcomeKind::Undecided,
     }
 }
 

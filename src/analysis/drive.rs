@@ -211,8 +211,8 @@ fn close(lo: &Rat, hi: &Rat, goal: u32) -> bool {
 }
 
 /// The extremes over all slides of one phase, within a relative 2^-goal where the search settles
-/// within its budget; always enclosed.
-pub(super) fn extremes(slides: &[Slide<'_>], goal: u32) -> Extremes {
+/// within its budget, and before `stop` says that the time is up; always enclosed.
+pub(super) fn extremes(slides: &[Slide<'_>], goal: u32, stop: &dyn Fn() -> bool) -> Extremes {
     let fine = Bits(u64::from(goal) + 40);
     let mut best: Vec<Best> = (0..QUANTITIES)
         .map(|_| Best {
@@ -223,7 +223,7 @@ pub(super) fn extremes(slides: &[Slide<'_>], goal: u32) -> Extremes {
         })
         .collect();
     for w in &windows(slides) {
-        search(w, goal, fine, &mut best);
+        search(w, goal, fine, &mut best, stop);
     }
     let root = |p: Peak| match p {
         Peak::Unbounded => Peak::Unbounded,
@@ -242,7 +242,7 @@ pub(super) fn extremes(slides: &[Slide<'_>], goal: u32) -> Extremes {
     }
 }
 
-fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
+fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best], stop: &dyn Fn() -> bool) {
     let Some(ends) = w.ends(fine) else {
         return unsettled(w, best);
     };
@@ -293,6 +293,9 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best]) {
     let mut cells = vec![(l, r, 0u32, skipped)];
     while let Some((l, r, depth, mut done)) = cells.pop() {
         budget -= 1;
+        if stop() {
+            budget = 0;
+        }
         let b = if depth < 12 { coarse } else { fine };
         let cell = [b.rat(&l), b.rat(&r)];
         let five = w.five([&cell[0], &cell[1]], b);
@@ -414,7 +417,7 @@ fn unsettled(w: &Window<'_>, best: &mut [Best]) {
 
 /// The work of the drive along a slide, as an enclosure about 10^-digits wide relative to the
 /// largest spring energy; None where it is not bounded, or not settled.
-pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
+pub(super) fn work(s: &Slide<'_>, goal: u32, stop: &dyn Fn() -> bool) -> Option<[Rat; 2]> {
     let b = Bits(u64::from(goal) + 48);
     let k = b.rat(&s.rig.stiffness);
     let half = b.rat(&Rat::frac(1, 2));
@@ -454,6 +457,9 @@ pub(super) fn work(s: &Slide<'_>, goal: u32) -> Option<[Rat; 2]> {
             continue;
         }
         budget -= 1;
+        if stop() {
+            return None;
+        }
         let mid = Rat::midpoint(&l, &r);
         let h = b.rat(&(&r - &mid));
         let taylor = |order: usize| {

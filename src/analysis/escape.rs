@@ -9,14 +9,18 @@
 //! irrational, while a phase must last a rational time: the phase is then made a little longer,
 //! and what happens past the exact end is left out of account.
 
+use super::classify::Ask;
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
+use crate::kernel::Certified;
 use crate::motion::phase::{Run, Setting, run};
-use crate::motion::root::{first_collision, obstacle_polygon};
+use crate::motion::root::first_collision;
+use crate::motion::solids::Solids;
 use crate::motion::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
 };
-use crate::number::{Int, Poly, Rat};
+use crate::number::filter::with_filter;
+use crate::number::{Algebraic, Int, Poly, Rat};
 use crate::scene::{Motion, Scene};
 use crate::slice::{Slice, Time};
 use std::time::Instant;
@@ -79,7 +83,19 @@ pub fn lasting(velocity: &Vec2, distance2: &Rat) -> (Rat, Time) {
     }
     let roots = Poly::new(vec![-n, Int::zero(), d.clone()]).real_roots();
     let exact = roots.last().cloned().unwrap_or_else(|| Rat::zero().into());
-    (exact.enclosure(16).1, Time::at(exact))
+    (just_past(&exact), Time::at(exact))
+}
+
+/// A rational number at least as large as a positive one, and larger by less than 2⁻¹⁶ of it.
+pub(super) fn just_past(exact: &Algebraic) -> Rat {
+    let mut bits = 16;
+    loop {
+        let (lo, hi) = exact.enclosure(bits);
+        if lo.sign() > 0 && (&hi - &lo) * Rat::from(1 << 16) <= lo {
+            return hi;
+        }
+        bits *= 2;
+    }
 }
 
 /// A scene prepared for many ways out.
@@ -90,10 +106,12 @@ pub struct Ground<'a> {
     pub shapes: Vec<PawlShape>,
     /// The obstacles' rings.
     pub obstacles: Vec<ObstacleShape>,
-    fixed: Vec<Polygon>,
+    fixed: Solids<'a>,
     turning: Vec<Polygon>,
     /// When to give up, undecided.
     pub deadline: Option<Instant>,
+    /// Whether to do without certified doubles.
+    exact: bool,
 }
 
 impl<'a> Ground<'a> {
@@ -103,13 +121,22 @@ impl<'a> Ground<'a> {
         Ground {
             scene,
             obstacles: scene.obstacles.iter().map(ObstacleShape::new).collect(),
-            fixed: scene.obstacles.iter().map(obstacle_polygon).collect(),
+            fixed: Solids::new(&scene.obstacles),
             turning: shapes
                 .iter()
-                .map(|s| Polygon::new(s.ring.vertices.clone(), Vec::new()))
+                .map(|s| Polygon::new(s.ring.vertices.to_vec(), Vec::new()))
                 .collect(),
             shapes,
             deadline,
+            exact: false,
+        }
+    }
+
+    /// Prepares a scene for what is asked.
+    pub(super) fn asked(scene: &'a Scene, ask: &Ask) -> Ground<'a> {
+        Ground {
+            exact: ask.exact,
+            ..Ground::new(scene, ask.deadline)
         }
     }
 
@@ -127,6 +154,21 @@ impl<'a> Ground<'a> {
         distance2: &Rat,
         friction: Option<&Rat>,
     ) -> Trajectory {
+        if self.exact {
+            let run = || self.run::<false>(start, velocity, distance2, friction);
+            return with_filter(false, run).published();
+        }
+        self.run::<true>(start, velocity, distance2, friction)
+    }
+
+    /// With certified doubles, or without.
+    fn run<const FILTER: bool>(
+        &self,
+        start: &Start,
+        velocity: &Vec2,
+        distance2: &Rat,
+        friction: Option<&Rat>,
+    ) -> Trajectory<Certified<FILTER>> {
         let (duration, end) = lasting(velocity, distance2);
         let stop = || self.late();
         let collision = self.scene.root.as_ref().and_then(|root| {
@@ -138,7 +180,7 @@ impl<'a> Ground<'a> {
                 Some(&duration),
             )
         });
-        let runs: Vec<Run> = self
+        let runs: Vec<Run<Certified<FILTER>>> = self
             .scene
             .pawls
             .iter()
@@ -161,8 +203,13 @@ impl<'a> Ground<'a> {
                     stop: &stop,
                     method: crate::motion::Method::Naive,
                     known: None,
+                    face: crate::face::Method::Auto,
                 };
-                run(&slice, &set, &start.angles[i], &start.touching[i])
+                let angle = Angle {
+                    half_turn: start.angles[i].half_turn,
+                    x: start.angles[i].x.clone(),
+                };
+                run(&slice, &set, &angle, &start.touching[i])
             })
             .collect();
         let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
@@ -211,13 +258,13 @@ impl<'a> Ground<'a> {
 }
 
 /// A run as a history that ends at `cut`.
-fn trace(
-    run: Run,
+fn trace<const FILTER: bool>(
+    run: Run<Certified<FILTER>>,
     name: &str,
     cut: &Time,
     struck: Option<&Vec<crate::motion::RootContact>>,
-) -> PawlTrace {
-    let mut events: Vec<Event> = run.events;
+) -> PawlTrace<Certified<FILTER>> {
+    let mut events: Vec<Event<Certified<FILTER>>> = run.events;
     events.retain(|e| e.time <= *cut);
     if let Some(contacts) = struck {
         events.push(Event {
@@ -230,7 +277,7 @@ fn trace(
             root_contacts: contacts.clone(),
         });
     }
-    let mut segments: Vec<Segment> = run.segments;
+    let mut segments: Vec<Segment<Certified<FILTER>>> = run.segments;
     segments.retain(|s| s.from < *cut);
     for s in &mut segments {
         if s.to > *cut {

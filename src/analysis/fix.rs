@@ -5,6 +5,7 @@
 //! does not exist is no value at all. Who needs a narrower answer asks again with more bits.
 
 use crate::number::{Int, Rat};
+use std::cell::RefCell;
 
 /// The precision: values are integers over 2^bits.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -30,7 +31,26 @@ fn div_ceil(a: &Int, b: &Int) -> Int {
     -((-a).div_rem_floor(b).0)
 }
 
+/// 1 where the interval holds no negative number, -1 where no positive one, 0 else.
+fn side(lo: &Int, hi: &Int) -> i32 {
+    if lo.sign() >= 0 {
+        1
+    } else if hi.sign() <= 0 {
+        -1
+    } else {
+        0
+    }
+}
+
 impl Bits {
+    /// The interval [lo, hi]/2^bits.
+    pub(super) fn units(self, lo: Int, hi: Int) -> Fix {
+        Fix {
+            lo,
+            hi,
+            bits: self.0,
+        }
+    }
     /// A rational number.
     pub fn rat(self, r: &Rat) -> Fix {
         let n = r.numer().shl(self.0);
@@ -79,10 +99,19 @@ impl Bits {
             bits: self.0,
         }
     }
-    /// π, by Machin's formula.
+    /// π, by Machin's formula. The last one made is kept, a thread each.
     pub fn pi(self) -> Fix {
-        let four = self.int(4);
-        four.mul(&four.mul(&self.atan_inverse(5)).sub(&self.atan_inverse(239)))
+        thread_local! {
+            static LAST: RefCell<Option<Fix>> = const { RefCell::new(None) };
+        }
+        LAST.with_borrow_mut(|last| match last {
+            Some(pi) if pi.bits == self.0 => pi.clone(),
+            _ => {
+                let four = self.int(4);
+                let pi = four.mul(&four.mul(&self.atan_inverse(5)).sub(&self.atan_inverse(239)));
+                last.insert(pi).clone()
+            }
+        })
     }
 }
 
@@ -94,6 +123,14 @@ impl Fix {
     /// The upper end.
     pub fn hi(&self) -> Rat {
         Rat::new(self.hi.clone(), Int::one().shl(self.bits))
+    }
+    /// Both ends over 2^bits.
+    pub(super) fn ends(self) -> [Int; 2] {
+        [self.lo, self.hi]
+    }
+    /// hi − lo over 2^bits.
+    pub(super) fn width(&self) -> Int {
+        &self.hi - &self.lo
     }
     /// The sign that holds throughout, None if undecided.
     pub fn sign(&self) -> Option<i32> {
@@ -126,40 +163,45 @@ impl Fix {
     }
     /// The product.
     pub fn mul(&self, o: &Fix) -> Fix {
-        let mut ends = [
-            &self.lo * &o.lo,
-            &self.lo * &o.hi,
-            &self.hi * &o.lo,
-            &self.hi * &o.hi,
-        ];
-        ends.sort();
+        let (a, b, c, d) = (&self.lo, &self.hi, &o.lo, &o.hi);
+        let up = |x: Int| ceil_shr(&x, self.bits);
+        let down = |x: Int| x.shr(self.bits);
+        // Which ends meet is read off the signs; only where both hold zero are there two candidates.
+        let (lo, hi) = match (side(a, b), side(c, d)) {
+            (1, 1) => (down(a * c), up(b * d)),
+            (1, -1) => (down(b * c), up(a * d)),
+            (1, _) => (down(b * c), up(b * d)),
+            (-1, 1) => (down(a * d), up(b * c)),
+            (-1, -1) => (down(b * d), up(a * c)),
+            (-1, _) => (down(a * d), up(a * c)),
+            (_, 1) => (down(a * d), up(b * d)),
+            (_, -1) => (down(b * c), up(a * c)),
+            _ => (down((a * d).min(b * c)), up((a * c).max(b * d))),
+        };
         Fix {
-            lo: ends[0].shr(self.bits),
-            hi: ceil_shr(&ends[3], self.bits),
+            lo,
+            hi,
             bits: self.bits,
         }
     }
     /// The quotient; None where the divisor may be zero.
     pub fn div(&self, o: &Fix) -> Option<Fix> {
-        o.sign().filter(|s| *s != 0)?;
+        let (c, d) = (&o.lo, &o.hi);
         let (a, b) = (self.lo.shl(self.bits), self.hi.shl(self.bits));
-        let mut down = [
-            div_floor(&a, &o.lo),
-            div_floor(&a, &o.hi),
-            div_floor(&b, &o.lo),
-            div_floor(&b, &o.hi),
-        ];
-        let mut up = [
-            div_ceil(&a, &o.lo),
-            div_ceil(&a, &o.hi),
-            div_ceil(&b, &o.lo),
-            div_ceil(&b, &o.hi),
-        ];
-        down.sort();
-        up.sort();
+        let (low, high) = match (c.sign(), d.sign()) {
+            (1, _) => (
+                (&a, if a.sign() < 0 { c } else { d }),
+                (&b, if b.sign() < 0 { d } else { c }),
+            ),
+            (_, -1) => (
+                (&b, if b.sign() < 0 { c } else { d }),
+                (&a, if a.sign() < 0 { d } else { c }),
+            ),
+            _ => return None,
+        };
         Some(Fix {
-            lo: down[0].clone(),
-            hi: up[3].clone(),
+            lo: div_floor(low.0, low.1),
+            hi: div_ceil(high.0, high.1),
             bits: self.bits,
         })
     }
@@ -308,6 +350,35 @@ mod tests {
             .atan()
             .add(&b.rat(&Rat::frac(1, 3)).atan());
         assert_eq!(third.sign(), None);
+    }
+
+    /// Products and quotients over all combinations of signs hold those of the ends, and no more.
+    #[test]
+    fn products_and_quotients_are_the_least_enclosures() {
+        let b = Bits(6);
+        let unit = Rat::from(64).recip();
+        for i in 0..2401i64 {
+            let [a, c] = [i % 49, i / 49].map(|k| {
+                let (x, y) = (k % 7 - 3, k / 7 - 3);
+                (x.min(y) * 37, x.max(y) * 37)
+            });
+            let fix = |(x, y): (i64, i64)| b.units(Int::from(x), Int::from(y));
+            let rat = |x: i64| Rat::frac(x, 64);
+            let pairs = [(a.0, c.0), (a.0, c.1), (a.1, c.0), (a.1, c.1)];
+            let close = |f: &Fix, all: &[Rat]| {
+                let (lo, hi) = (all.iter().min().unwrap(), all.iter().max().unwrap());
+                f.lo() <= *lo && *lo < f.lo() + &unit && *hi <= f.hi() && f.hi() - &unit < *hi
+            };
+            let all = pairs.map(|(x, y)| rat(x) * rat(y));
+            assert!(close(&fix(a).mul(&fix(c)), &all), "{a:?}·{c:?}");
+            match fix(a).div(&fix(c)) {
+                Some(q) => {
+                    let all = pairs.map(|(x, y)| rat(x) / rat(y));
+                    assert!(close(&q, &all), "{a:?}/{c:?}");
+                }
+                None => assert!(c.0 <= 0 && 0 <= c.1),
+            }
+        }
     }
 
     #[test]

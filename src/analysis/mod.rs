@@ -10,21 +10,27 @@
 pub mod bound;
 mod cells;
 pub mod classify;
+mod climb;
 pub mod critical;
 pub mod document;
 pub mod draw;
 mod drive;
 pub mod escape;
+mod field;
 pub mod fix;
+mod force_document;
 pub mod forces;
 pub mod handbook;
 mod jet;
 mod load;
 pub mod peak;
 mod qpoly;
+mod rough;
+mod slope;
 pub mod stretch;
 pub mod summary;
 pub mod total;
+mod way;
 
 pub use classify::{Ask, Verdict};
 pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};

@@ -1,23 +1,17 @@
 //! The highest contact force along a stretch, certified (DP App. A, and where it fails).
 //!
-//! Along a stretch the force is f(x) = K·T(x)·den(x)/N(x), T = θ/x (x taken into den) or, past
-//! half a turn, θ. Prop. A.1 says that it peaks at an end; that fails for type A, and for type B
-//! needs a cut where the sliding reverses. So nothing is assumed: the stretch is cut at the roots
-//! of d, and each part is searched by branch and bound on x. A cell on which the derivative's
-//! numerator
-//!
-//! ```text
-//! E(x) = T′·den·N + T·(den′·N − den·N′)
-//! ```
-//!
-//! has one sign is decided by its ends; one that cannot beat what is already attained is
-//! dropped; any other is halved. What remains is narrower than asked. The supremum is unbounded
-//! exactly where N has a root at a part's end and T·den has none: decided in algebraic numbers.
+//! Prop. A.1 says that the force peaks at an end of a stretch; that fails for type A, and for type
+//! B needs a cut where the sliding reverses. So nothing is assumed: the stretch is cut at the roots
+//! of d, and each part is searched ([`super::slope`]). Doubles with proven bounds settle what
+//! they can; numbers of any width settle the rest.
 
+use super::climb::Spot;
 use super::fix::{Bits, Fix};
-use super::qpoly::{QPoly, horner};
+use super::qpoly::QPoly;
+use super::rough;
+use super::slope::Part;
 use super::stretch::{Law, Stretch};
-use crate::number::{Algebraic, Rat};
+use crate::number::{Algebraic, Interval, Rat};
 use crate::slice::Time;
 
 /// A supremum.
@@ -71,8 +65,17 @@ pub struct Peaked {
 }
 
 /// Narrow enough: relative width at most 2^-goal.
-fn narrow(lo: &Rat, hi: &Rat, goal: u32) -> bool {
+pub(super) fn narrow(lo: &Rat, hi: &Rat, goal: u32) -> bool {
     (hi - lo) * Rat::from(2).pow(goal) <= *lo
+}
+
+/// A positive value in doubles, where they hold it narrowly enough.
+fn settled(v: Interval, goal: u32) -> Option<(Rat, Rat)> {
+    if !(v.is_finite() && v.lo > 0.0) {
+        return None;
+    }
+    let (lo, hi) = (Rat::from_f64(v.lo), Rat::from_f64(v.hi));
+    narrow(&lo, &hi, goal).then_some((lo, hi))
 }
 
 /// The largest torque k|θ| of a stretch: θ is monotone, so it is attained at an end.
@@ -85,6 +88,14 @@ pub fn torque(s: &Stretch, stiffness: &Rat, goal: u32) -> Peaked {
     if s.half_turn == 0 && x.sign() == 0 {
         return Peaked {
             peak: Peak::zero(),
+            when,
+        };
+    }
+    let rough = rough::theta(&x.interval(), s.half_turn);
+    let rough = if s.side < 0 { -rough } else { rough };
+    if let Some((lo, hi)) = settled(rough * stiffness.interval(), goal) {
+        return Peaked {
+            peak: Peak::Within(lo, hi),
             when,
         };
     }
@@ -155,15 +166,14 @@ pub fn force(s: &Stretch, stiffness: &Rat, mu: &Rat, goal: u32) -> Peaked {
                 };
                 let rub = mu * &Rat::from(i64::from(epsilon * sign(&drag)));
                 let away = Rat::from(i64::from(sign(&turn.poly())));
-                let mut part = Part {
-                    ends: [part[0].clone(), part[1].clone()],
-                    half_turn: s.half_turn,
-                    num: den.clone(),
-                    den: turn.scale(&away).add(&rise.scale(&rub)),
-                    scale2: stiffness.square() * (Rat::one() + mu.square()) * normal2,
-                    by_x: false,
+                let part = Part::new(
+                    [part[0].clone(), part[1].clone()],
+                    s.half_turn,
+                    den.clone(),
+                    turn.scale(&away).add(&rise.scale(&rub)),
+                    stiffness.square() * (Rat::one() + mu.square()) * normal2,
                     goal,
-                };
+                );
                 let (peak, at) = part.supremum();
                 let when = match at {
                     Spot::End(k) if part.ends[k] == s.x[0] => Instant::At(s.t[0].clone()),
@@ -201,208 +211,6 @@ pub(super) fn higher(a: Option<Peaked>, b: Peaked) -> Peaked {
     Peaked {
         when: if second { b.when } else { a.when },
         peak: a.peak.max(b.peak),
-    }
-}
-
-/// Where in a part.
-enum Spot {
-    End(usize),
-    Inside(Rat, Rat),
-}
-
-/// A part of a stretch on which the sliding keeps its direction.
-struct Part {
-    ends: [Algebraic; 2],
-    half_turn: i64,
-    num: QPoly,
-    den: QPoly,
-    /// K².
-    scale2: Rat,
-    /// T is θ/x rather than θ.
-    by_x: bool,
-    goal: u32,
-}
-
-/// A part's coefficients at one precision.
-struct Tables {
-    b: Bits,
-    scale: Fix,
-    num: Vec<Fix>,
-    den: Vec<Fix>,
-    /// num·den and num′·den − num·den′, multiplied out exactly: near a common root of both
-    /// terms nothing is lost.
-    both: Vec<Fix>,
-    bend: Vec<Fix>,
-}
-
-impl Part {
-    fn supremum(&mut self) -> (Peak, Spot) {
-        let at_rest = |x: &Algebraic| self.half_turn == 0 && x.sign() == 0;
-        // Where θ and N vanish together, one x is cancelled.
-        let through_rest = self.ends.iter().any(at_rest);
-        if through_rest && self.den.0.first().is_none_or(Rat::is_zero) && !self.den.0.is_empty() {
-            self.den.0.remove(0);
-            self.by_x = true;
-        }
-        let cancelled = self.by_x;
-        if self.half_turn == 0 && !self.by_x {
-            // θ = x·(θ/x): where f is nearly 0/0 the cancellation is then in the polynomials.
-            self.num.0.insert(0, Rat::zero());
-            self.by_x = true;
-        }
-        let den = self.den.poly();
-        if den.is_zero() {
-            return (Peak::Unbounded, Spot::End(0));
-        }
-        for k in 0..2 {
-            let rests = self.half_turn == 0 && self.ends[k].sign() == 0 && !cancelled;
-            if self.ends[k].sign_of(&den) == 0 && !rests {
-                return (Peak::Unbounded, Spot::End(k));
-            }
-        }
-        let mut n = 64 + u64::from(self.goal);
-        loop {
-            if let Some((lo, hi, at)) = self.search(n)
-                && (narrow(&lo, &hi, self.goal) || hi.is_zero() || n > 1 << 14)
-            {
-                return (Peak::Within(lo, hi), at);
-            }
-            n *= 2;
-        }
-    }
-
-    fn search(&self, n: u64) -> Option<(Rat, Rat, Spot)> {
-        let b = Bits(n);
-        let (rise, fall) = (self.num.derivative(), self.den.derivative());
-        let bend = rise.mul(&self.den).sub(&self.num.mul(&fall));
-        let t = Tables {
-            b,
-            scale: b.rat(&self.scale2).sqrt()?,
-            num: self.num.fix(b),
-            den: self.den.fix(b),
-            both: self.num.mul(&self.den).fix(b),
-            bend: bend.fix(b),
-        };
-        let (mut lo, mut hi) = (Rat::zero(), Rat::zero());
-        let mut at = Spot::End(0);
-        let mut boxes = Vec::new();
-        for k in 0..2 {
-            let (l, r) = self.ends[k].enclosure(n as u32 - 8);
-            let v = self.value(&t, &b.hull(&l, &r))?;
-            if v.lo() > lo {
-                (lo, at) = (v.lo(), Spot::End(k));
-            }
-            hi = hi.max(v.hi());
-            boxes.push((l, r));
-        }
-        let mut cells = Vec::new();
-        if boxes[0].1 < boxes[1].0 {
-            cells.push((boxes[0].1.clone(), boxes[1].0.clone(), 0u32));
-        }
-        // More cells with more bits, so that every search ends.
-        let mut budget = 20_000 + 100 * n;
-        while let Some((l, r, depth)) = cells.pop() {
-            budget = budget.checked_sub(1)?;
-            let x = b.hull(&l, &r);
-            let falls = self.slope(&t, &x).sign();
-            if falls.is_some() {
-                // Monotone: highest at an end.
-                for end in [&l, &r] {
-                    let v = self.value(&t, &b.rat(end))?;
-                    if v.lo() > lo {
-                        lo = v.lo();
-                        at = match () {
-                            () if *end == boxes[0].1 => Spot::End(0),
-                            () if *end == boxes[1].0 => Spot::End(1),
-                            () => Spot::Inside(l.clone(), r.clone()),
-                        };
-                    }
-                    hi = hi.max(v.hi());
-                }
-                continue;
-            }
-            let mid = Rat::midpoint(&l, &r);
-            let (value, centre) = (self.value(&t, &x), self.value(&t, &b.rat(&mid))?);
-            if centre.lo() > lo {
-                (lo, at) = (centre.lo(), Spot::Inside(l.clone(), r.clone()));
-            }
-            let bound = value.map(|v| {
-                // The mean value form is the narrower one on small cells.
-                let plain = v.hi();
-                let slope = self.derivative(&t, &x);
-                let reach = slope.map(|d| {
-                    let half = b.rat(&(&r - &mid));
-                    centre.add(&d.abs().mul(&half)).hi()
-                });
-                reach.map_or(plain.clone(), |m| m.min(plain))
-            });
-            if let Some(top) = bound
-                && (top <= lo || narrow(&lo, &top, self.goal + 2))
-            {
-                hi = hi.max(top);
-                continue;
-            }
-            if u64::from(depth) + 8 > n {
-                return None;
-            }
-            cells.push((l, mid.clone(), depth + 1));
-            cells.push((mid, r, depth + 1));
-        }
-        Some((lo, hi, at))
-    }
-
-    /// |T| over an enclosed position, and T′ with the sign of |T|.
-    fn lever(&self, b: Bits, x: &Fix) -> (Fix, Fix) {
-        let two = b.int(2);
-        let slope = two
-            .div(&b.int(1).add(&x.mul(x)))
-            .unwrap_or_else(|| b.int(2));
-        if !self.by_x {
-            let t = theta(x, self.half_turn, b);
-            return match t.sign() {
-                Some(s) if s < 0 => (t.neg(), slope.neg()),
-                Some(_) => (t, slope),
-                None => (t.abs(), slope.join(&slope.neg())),
-            };
-        }
-        // 2·arctan(x)/x = 2 − 2x²/3 + …: even, falling in |x|, with a derivative between
-        // −4x/3 and 0.
-        let third = |k: i64| b.rat(&Rat::frac(k, 3));
-        let value = match x.sign() {
-            Some(s) if s != 0 => x.atan().mul(&two).div(x),
-            _ => None,
-        };
-        let series = two.sub(&x.mul(x).mul(&third(2))).join(&two);
-        let value = value.unwrap_or(series);
-        // A′ = (2/(1 + x²) − A)/x away from 0.
-        let rough = x.mul(&third(-4)).join(&b.int(0));
-        let fine = match x.sign() {
-            Some(s) if s != 0 => slope.sub(&value).div(x),
-            _ => None,
-        };
-        let slope = match fine {
-            Some(f) if f.hi() - f.lo() < rough.hi() - rough.lo() => f,
-            _ => rough,
-        };
-        (value, slope)
-    }
-
-    fn value(&self, t: &Tables, x: &Fix) -> Option<Fix> {
-        let (lever, _) = self.lever(t.b, x);
-        let q = horner(&t.num, x, t.b).div(&horner(&t.den, x, t.b))?;
-        Some(lever.mul(&q.abs()).mul(&t.scale))
-    }
-
-    /// E(x), up to a sign that is constant along the part.
-    fn slope(&self, t: &Tables, x: &Fix) -> Fix {
-        let (lever, rate) = self.lever(t.b, x);
-        let (both, bend) = (horner(&t.both, x, t.b), horner(&t.bend, x, t.b));
-        rate.mul(&both).add(&lever.mul(&bend))
-    }
-
-    fn derivative(&self, t: &Tables, x: &Fix) -> Option<Fix> {
-        let den = horner(&t.den, x, t.b);
-        Some(self.slope(t, x).div(&den.mul(&den))?.mul(&t.scale))
     }
 }
 
@@ -460,6 +268,12 @@ fn level_value(
     goal: u32,
 ) -> Peak {
     let scale2 = stiffness.square() * (Rat::one() + mu.square()) * *normal2;
+    let lever = rough::theta(&s.x[0].interval(), s.half_turn);
+    let lever = if s.side < 0 { -lever } else { lever };
+    let rough = scale2.interval().sqrt() * lever / (s2.interval().sqrt() + rub.interval());
+    if let Some((lo, hi)) = settled(rough, goal) {
+        return Peak::Within(lo, hi);
+    }
     let mut n = 64 + u64::from(goal);
     loop {
         let b = Bits(n);

@@ -183,12 +183,17 @@ fn has_more(p: &PhaseForces) -> bool {
     p.peak.is_some() || p.lost_in_snaps.is_some()
 }
 
+/// Rows under a head; a column with nothing below its head is left out.
 fn table<const N: usize>(rows: &[[String; N]], out: &mut String) {
     let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..N).map(width).collect();
+    let shown: Vec<(usize, usize)> = (0..N)
+        .filter(|&c| rows.iter().skip(1).any(|r| !r[c].is_empty()))
+        .map(|c| (c, width(c)))
+        .collect();
     for r in rows {
         let mut line = String::from(" ");
-        for (cell, w) in r.iter().zip(&widths) {
+        for &(c, w) in &shown {
+            let cell = &r[c];
             let gap = " ".repeat(w - cell.chars().count());
             let _ = write!(line, " {cell}{gap} ");
         }

@@ -18,6 +18,7 @@ mod approx;
 mod bands;
 mod boundary;
 mod compare;
+mod cylinder;
 mod frames;
 mod hash;
 mod island;
@@ -34,7 +35,8 @@ mod run;
 mod stops;
 mod trace;
 
-pub(crate) use boundary::{Boundary, Glue, boundary};
+pub use boundary::Found;
+pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};
 pub use kernel::Stats;
 pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};

@@ -50,10 +50,24 @@ pub struct PhaseCostDocument {
     pub swept: u64,
     /// Half-edges of the free components that were made.
     pub half_edges: u64,
-    /// Seconds to build the slices.
-    pub build_seconds: f64,
-    /// Seconds to follow the motion.
-    pub run_seconds: f64,
+    /// Slices built from contacts; a reversed phase turns those of its phase round instead.
+    pub slices: u64,
+    /// Free components found by walking round them.
+    pub walked: u64,
+    /// Free components found by merges.
+    pub merged: u64,
+    /// How many merges that took.
+    pub merges: u64,
+    /// Free components known from another run or phase.
+    pub reused: u64,
+    /// Free components given up because they contradicted the slice; all arcs were looked at from there on.
+    pub abandoned: u64,
+    /// Seconds to build the slices; absent where times are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub build_seconds: Option<f64>,
+    /// Seconds to follow the motion; absent where times are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub run_seconds: Option<f64>,
 }
 
 impl LedgerDocument {
@@ -77,8 +91,14 @@ impl LedgerDocument {
                     arcs: p.arcs,
                     swept: p.swept,
                     half_edges: p.half_edges,
-                    build_seconds: p.build,
-                    run_seconds: p.run,
+                    slices: p.slices,
+                    walked: p.faces.walked,
+                    merged: p.faces.merged,
+                    merges: p.faces.merges,
+                    reused: p.faces.reused,
+                    abandoned: p.faces.abandoned,
+                    build_seconds: Some(p.build),
+                    run_seconds: Some(p.run),
                 })
                 .collect(),
         }
@@ -86,6 +106,14 @@ impl LedgerDocument {
 }
 
 impl ResultDocument {
+    /// Leaves the seconds out, which differ from run to run: what remains is the same, to the
+    /// byte, wherever and as often as the scene is run.
+    pub fn without_times(&mut self) {
+        for p in &mut self.ledger.phases {
+            p.build_seconds = None;
+            p.run_seconds = None;
+        }
+    }
     /// What a result of the double kernel shows: doubles, nowhere an exact number.
     pub(super) fn in_doubles(&mut self) {
         let plain = |n: &mut Num| n.exact = None;

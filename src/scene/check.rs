@@ -261,8 +261,10 @@ impl fmt::Display for CheckReport {
         }
         writeln!(
             f,
-            "  plan           {} phases, {} contact pairs before culling",
-            self.phases, self.contact_pairs
+            "  plan           {} phase{}, {} contact pairs before culling",
+            self.phases,
+            if self.phases == 1 { "" } else { "s" },
+            self.contact_pairs
         )?;
         for feature in &self.features {
             let sign = if feature.modelled {

@@ -450,7 +450,7 @@ fn suggestion(key: &str, known: &[&str]) -> String {
 }
 
 /// The known key that an unknown one is a slip of, if it looks like one.
-fn nearest<'k>(key: &str, known: &[&'k str]) -> Option<&'k str> {
+pub(crate) fn nearest<'k>(key: &str, known: &[&'k str]) -> Option<&'k str> {
     let key = clip(key).to_lowercase();
     let (distance, meant) = known
         .iter()

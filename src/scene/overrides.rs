@@ -1,6 +1,7 @@
 //! `--set name=value`: changes to the tree before anything is made of it, so that an override is
 //! judged by the same rules, and blamed by its own place, as if it stood in the file.
 
+use super::convert::{clip, nearest};
 use super::diagnostic::Diagnostic;
 use super::source::{Source, Sources, Span};
 use super::toml;
@@ -129,7 +130,10 @@ fn descend<'a>(
                 }
                 None => {
                     let keys: Vec<&str> = entries.iter().map(|e| e.key.as_str()).collect();
-                    return Err(format!("choose one of: {}", keys.join(", ")));
+                    return Err(match nearest(step, &keys) {
+                        Some(meant) => format!("did you mean `{meant}`?"),
+                        None => format!("choose one of: {}", listed(&keys)),
+                    });
                 }
             };
             Ok(&mut entries[place].value)
@@ -143,14 +147,38 @@ fn descend<'a>(
             match place {
                 Some(place) => Ok(&mut items[place]),
                 None if count == 0 => Err("the list is empty".to_owned()),
-                None => Err(format!(
-                    "choose an index from 0 to {}, or a name from the list",
-                    count - 1
-                )),
+                None => {
+                    let names: Vec<&str> = items
+                        .iter()
+                        .filter_map(|item| match item.get("name").map(|n| &n.kind) {
+                            Some(Kind::String(s)) => Some(s.as_str()),
+                            _ => None,
+                        })
+                        .collect();
+                    let index = match count {
+                        1 => "the index 0".to_owned(),
+                        _ => format!("an index from 0 to {}", count - 1),
+                    };
+                    Err(match nearest(step, &names) {
+                        Some(meant) => format!("did you mean `{meant}`?"),
+                        None if names.is_empty() => format!("choose {index}"),
+                        None => format!("choose {index}, or a name: {}", listed(&names)),
+                    })
+                }
             }
         }
         _ => Err(format!("{what} has no parts")),
     }
+}
+
+/// The first few of what there is, for a message.
+fn listed(names: &[&str]) -> String {
+    const MOST: usize = 12;
+    let mut text: Vec<String> = names.iter().take(MOST).map(|n| clip(n)).collect();
+    if names.len() > MOST {
+        text.push("…".to_owned());
+    }
+    text.join(", ")
 }
 
 /// A TOML value where it reads as one; anything else is a string, which may be a number.

@@ -36,6 +36,16 @@ use snapfit::report::json::{Provenance, ResultDocument};
 use snapfit::scene::{Motion, Obstacle, Pawl, Root, Scene, read_scene};
 use snapfit::slice::Time;
 
+/// A wide floor; its edge 2 is the top, y = 0.
+pub const FLOOR: &str = "floor: -20,-1 20,-1 20,0 -20,0\n";
+/// A pawl whose tip, vertex 1, hangs 4 below its hinge and 3 to the right.
+pub const ARM: &str = "pawl p at 0,6: 0,0 3,-4 4,-1\n";
+
+/// The story of a scene on [`FLOOR`].
+pub fn on_floor(rest: &str) -> Told {
+    tell(&(FLOOR.to_owned() + rest))
+}
+
 /// A rational from its text.
 pub fn q(text: &str) -> Rat {
     text.trim()
@@ -252,7 +262,7 @@ pub fn by_both_methods(scene: &Scene) -> Trajectory {
     let text = |t: &Trajectory| {
         let how = Provenance {
             arithmetic: "filtered",
-            method: "either",
+            method: Method::Naive,
         };
         let mut doc = serde_json::to_value(ResultDocument::new(scene, t, how)).unwrap();
         doc.as_object_mut().unwrap().remove("ledger");

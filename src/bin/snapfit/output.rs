@@ -17,17 +17,55 @@ pub(crate) fn write(to: Option<&Path>, text: &str) -> Result<(), String> {
     replace(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
+/// Whether two paths mean one file.
+fn same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// Refuses to write two results to one file.
+pub(crate) fn apart(one: Option<&Path>, other: Option<&Path>) -> Result<(), String> {
+    match (one, other) {
+        (Some(a), Some(b)) if a != Path::new("-") && same(a, b) => Err(format!(
+            "{}: two results go to this file; one would be lost",
+            a.display()
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses an output path that is the input file.
 pub(crate) fn spare_input(input: &Path, out: Option<&Path>) -> Result<(), String> {
-    let same = |a: &Path, b: &Path| match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
     match out {
-        Some(out) if same(input, out) => Err(format!(
+        Some(out) if input != Path::new("-") && same(input, out) => Err(format!(
             "{}: this is the input; it would be lost",
             out.display()
         )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses an output path that cannot be written to, before any work is done for it.
+pub(crate) fn prepare(input: &Path, out: Option<&Path>) -> Result<(), String> {
+    spare_input(input, out)?;
+    let Some(path) = out.filter(|p| *p != Path::new("-")) else {
+        return Ok(());
+    };
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(format!(
+            "{shown}: this is a directory; give the name of a file in it"
+        ));
+    }
+    let within = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match within {
+        Some(dir) if !dir.exists() => Err(format!(
+            "{shown}: there is no directory {}; make it first",
+            dir.display()
+        )),
+        Some(dir) if !dir.is_dir() => Err(format!("{shown}: {} is not a directory", dir.display())),
         _ => Ok(()),
     }
 }

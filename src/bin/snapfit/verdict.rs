@@ -7,7 +7,7 @@ use super::{
 use snapfit::analysis::escape::with_motion;
 use snapfit::analysis::summary::{classify_summary, forces_summary};
 use snapfit::analysis::{self, Ask, ClassifyDocument, Verdict, draw};
-use snapfit::motion::{Options, OutcomeKind, simulate};
+use snapfit::motion::simulate;
 use snapfit::report::json::{Provenance, ResultDocument};
 use snapfit::report::{picture, pretty};
 use snapfit::scene::Scene;
@@ -28,6 +28,8 @@ fn ask(engine: &Engine) -> Result<(Ask, Provenance), Failure> {
             .time_limit
             .and_then(|limit| Instant::now().checked_add(limit)),
         critical: true,
+        exact: engine.arithmetic == Arithmetic::Exact,
+        method: super::method(engine),
     };
     Ok((ask, how))
 }
@@ -46,8 +48,10 @@ fn expectation(word: &str) -> Result<(&'static str, bool), Failure> {
 pub(super) fn run_classify(args: &Classify) -> Result<u8, Failure> {
     let expected = args.expect.as_deref().map(expectation).transpose()?;
     for to in [&args.svg, &args.escape].into_iter().flatten() {
-        output::spare_input(&args.common.file, Some(to))?;
+        output::prepare(&args.common.file, Some(to))?;
+        output::apart(Some(to), args.common.out.as_deref())?;
     }
+    output::apart(args.svg.as_deref(), args.escape.as_deref())?;
     let file = read(&args.common)?;
     let (ask, how) = ask(&args.engine)?;
     let (document, decisive) = analysis::document::classify_with_way(file.scene(), &ask)
@@ -110,11 +114,7 @@ fn drawing(
     ask: &Ask,
     how: Provenance,
 ) -> Result<String, Failure> {
-    let options = Options {
-        deadline: ask.deadline,
-        ..Options::default()
-    };
-    let run = simulate(scene, &options).map_err(|e| e.to_string())?;
+    let run = simulate(scene, &ask.options()).map_err(|e| e.to_string())?;
     let motion = picture::svg(scene, &ResultDocument::new(scene, &run, how));
     if document.total.is_none() {
         return Ok(motion);
@@ -124,7 +124,8 @@ fn drawing(
 
 pub(super) fn run_forces(args: &Forces) -> Result<u8, Failure> {
     if let Some(to) = &args.svg {
-        output::spare_input(&args.common.file, Some(to))?;
+        output::prepare(&args.common.file, Some(to))?;
+        output::apart(Some(to), args.common.out.as_deref())?;
     }
     let file = read(&args.common)?;
     let wish = analysis::Wish {
@@ -154,7 +155,7 @@ pub(super) fn run_forces(args: &Forces) -> Result<u8, Failure> {
         let note = document.note.as_deref().unwrap_or_default();
         let _ = writeln!(std::io::stderr(), "snapfit: {note}");
     }
-    Ok(if document.outcome == OutcomeKind::Undecided.name() {
+    Ok(if document.undecided {
         UNDECIDED
     } else {
         DECIDED
