@@ -90,9 +90,10 @@ fn ratio(n: i64, d: i64) -> RootOf {
     }
 }
 
-/// Two families of long crossing lines: about n²/4·(a share) crossings, and a face around them all whose
-/// boundary is the fringe of their ends.
-fn lattice(n: usize) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
+/// Two families of long crossing lines, or of curves t = P/(1 + u²): about n²/4·(a share) crossings, and a face around
+/// them all whose boundary is the fringe of their ends.
+/// Of each also: constant, slope, and its ends in thousandths.
+fn lattice(n: usize, curved: bool) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
     let mut seed = 5u64;
     let mut below = |m: i64| {
         seed = seed
@@ -108,9 +109,15 @@ fn lattice(n: usize) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
             if i % 2 == 0 { steep } else { -steep },
         );
         let (a, b) = (-1000 + below(99), 1000 + below(99));
+        let m = n as i64;
+        let (p, q) = if curved {
+            ([c + 300 * m, s, c - 200 * m], [1000, 0, 1000])
+        } else {
+            ([c, s, 0], [1000, 0, 0])
+        };
         arcs.push(SourceArc {
-            p: [Int::from(c), Int::from(s), Int::zero()],
-            q: [Int::from(1000), Int::zero(), Int::zero()],
+            p: p.map(Int::from),
+            q: q.map(Int::from),
             left: ratio(a, 1000),
             right: ratio(b, 1000),
             line: 0,
@@ -120,23 +127,27 @@ fn lattice(n: usize) -> (Vec<SourceArc>, Vec<[i64; 4]>) {
     (arcs, plain)
 }
 
-/// Crossings of the lines of a lattice, all pairs.
-fn crossings(lines: &[[i64; 4]]) -> u64 {
+/// Crossings of a lattice, all pairs: c + s·u = d + r·u for lines, c(1 + u²) + s·u = d(1 + u²) + r·u for
+/// curves, between the ends. In doubles, for the count.
+fn crossings(lines: &[[i64; 4]], curved: bool) -> u64 {
     let mut count = 0;
     for (i, l) in lines.iter().enumerate() {
         for m in &lines[i + 1..] {
-            // c + s·u = d + r·u at u = (d − c)/(s − r), between a/1000 and b/1000.
-            let (top, bottom) = (m[0] - l[0], l[1] - m[1]);
-            if bottom == 0 {
+            let (d, s) = ((l[0] - m[0]) as f64, (l[1] - m[1]) as f64);
+            if s == 0.0 {
                 continue;
             }
-            let (top, bottom) = if bottom < 0 {
-                (-top, -bottom)
-            } else {
-                (top, bottom)
-            };
-            let (a, b) = (l[2].max(m[2]), l[3].min(m[3]));
-            count += u64::from(a * bottom <= top * 1000 && top * 1000 <= b * bottom);
+            let (a, b) = (l[2].max(m[2]) as f64 / 1e3, l[3].min(m[3]) as f64 / 1e3);
+            let within = |u: f64| a <= u && u <= b;
+            if !curved {
+                count += u64::from(within(-d / s));
+            } else if d == 0.0 {
+                count += u64::from(within(0.0));
+            } else if s * s >= 4.0 * d * d {
+                // d·u² + s·u + d: the roots are each other's inverses.
+                let q = -0.5 * (s + s.signum() * (s * s - 4.0 * d * d).sqrt());
+                count += u64::from(within(q / d)) + u64::from(within(d / q));
+            }
         }
     }
     count
@@ -179,29 +190,31 @@ fn racks(most: usize) {
     }
 }
 
-fn lattices(most: usize) {
-    println!("\n# Long crossing lines, the start outside: the whole arrangement is quadratic");
-    println!("     n  crossings      |F|  |F|/n  merge s  walk s  auto");
+fn lattices(most: usize, curved: bool) {
+    println!(
+        "\n# Long crossing {}, the start outside: the whole arrangement is quadratic",
+        if curved { "curves" } else { "lines" }
+    );
+    println!("     n  crossings      |F|  |F|/n  merge s  auto");
     let mut points = [Vec::new(), Vec::new(), Vec::new()];
     for n in sizes(250, 4, most.min(64_000)) {
-        let (arcs, plain) = lattice(n);
+        let (arcs, plain) = lattice(n, curved);
         let start = (Rat::zero(), Rat::from(-10 * n as i64));
         let mut answer = None;
-        let [merge, walk] = [Method::Merge, Method::Walk]
-            .map(|m| seconds(|| answer = Some(face(&arcs, &start, m).expect("arcs"))));
+        let merge = seconds(|| answer = Some(face(&arcs, &start, Method::Merge).expect("arcs")));
         let auto = face(&arcs, &start, Method::Auto).expect("arcs").method;
         let edges = answer.map_or(0, |a| a.half_edges);
-        let all = crossings(&plain);
+        let all = crossings(&plain, curved);
         println!(
-            "{n:6} {all:10} {edges:8} {:6.2} {merge:8.4} {walk:8.4} {auto:?}",
+            "{n:6} {all:10} {edges:8} {:6.2} {merge:8.4} {auto:?}",
             edges as f64 / n as f64
         );
-        for (list, y) in points.iter_mut().zip([all as f64, merge, walk]) {
+        for (list, y) in points.iter_mut().zip([all as f64, merge, edges as f64]) {
             list.push((n as f64, y));
         }
     }
-    let [all, merge, walk] = points.map(|p| exponent(&p));
-    println!("crossings n^{all:.2}, merge n^{merge:.2}, walk n^{walk:.2}");
+    let [all, merge, edges] = points.map(|p| exponent(&p));
+    println!("crossings n^{all:.2}, |F| n^{edges:.2}, merge n^{merge:.2}");
 }
 
 fn degenerate() {
@@ -587,7 +600,8 @@ fn main() {
         racks(most);
     }
     if wanted("lattices") {
-        lattices(most.min(16_000));
+        lattices(most.min(64_000), false);
+        lattices(most.min(64_000), true);
     }
     if wanted("degenerate") {
         degenerate();

@@ -81,8 +81,8 @@ impl Kernel {
     }
 
     fn cmp_from(&mut self, x: NumId, y: NumId, f: u32) -> Option<Ordering> {
-        let a = self.from_frame(x, f)?;
-        let b = self.from_frame(y, f)?;
+        let a = self.distance_from(x, f)?;
+        let b = self.distance_from(y, f)?;
         apart(a, b)
     }
 
@@ -102,7 +102,7 @@ impl Kernel {
     }
 
     /// The distance of a number from a frame.
-    fn from_frame(&mut self, x: NumId, f: u32) -> Option<Approx> {
+    fn distance_from(&mut self, x: NumId, f: u32) -> Option<Approx> {
         if let Some(&(g, d)) = self.local.get(&x)
             && g == f
         {

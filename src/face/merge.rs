@@ -125,7 +125,7 @@ fn trace(
 
 /// How many faces one merge takes: each level of the tree walks along all edges that are left, so fewer levels
 /// are faster as long as few pairs of edges are near each other.
-const WAYS: usize = 8;
+const WAYS: usize = 16;
 
 /// A fixed seed, so that every run is the same.
 const SEED: u64 = 0x5eed_5eed_5eed_5eed;
