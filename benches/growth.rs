@@ -6,9 +6,10 @@
 //! `cargo bench --bench growth` goes to 10⁵ arcs, `GROWTH_MAX=1000000` further; words after `--` choose parts.
 
 use snapfit::face::{ArcFile, Method, RootOf, SourceArc, face};
-use snapfit::motion::{Options, simulate};
+use snapfit::motion::{Arithmetic, Ledger, Method as By, Options, simulate, slices};
 use snapfit::number::{Int, Rat};
-use snapfit::scene::read_scene;
+use snapfit::scene::{SceneFile, read_scene};
+use snapfit::slice::Free;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -277,19 +278,260 @@ fn scene(teeth: usize, far: usize, pawls: usize) -> String {
     text
 }
 
-/// CPU seconds of a simulation, reading apart.
-fn simulated(text: &str) -> f64 {
-    let file = match read_scene("growth", text) {
+/// A pawl with a straight front and a round back, of `corners` corners in all, that passes `length` units of a row of
+/// teeth, `teeth` in all.
+fn row(teeth: usize, length: usize, corners: usize) -> String {
+    let mut text =
+        String::from("[scene]\nname = \"row\"\n[[obstacle]]\nname = \"R\"\nvertices = [");
+    let (n, w) = (16 * teeth, 16 * length);
+    for i in 0..teeth {
+        // As steep as those of the rack, whatever their size.
+        let _ = write!(
+            text,
+            "[\"{}/{n}\", \"0\"],[\"{}/{n}\", \"{}/{n}\"],",
+            i * w,
+            i * w + w / 2,
+            10 * length
+        );
+    }
+    let _ = writeln!(
+        text,
+        "[\"{length}\", \"0\"],[\"{length}\", \"-1\"],[\"0\", \"-1\"]]"
+    );
+    let back = corners - 2;
+    let mut at = String::new();
+    for k in 0..back {
+        let _ = write!(
+            at,
+            ",[\"-{}/1000\", \"{}/1000\"]",
+            2300 + 4 * k * (back - k),
+            300 + 1400 * k / back
+        );
+    }
+    // The tip reaches halfway down the teeth.
+    let tip = format!("{}/{}", 5 * length, n);
+    let tip = if length == teeth { "3/10" } else { &tip };
+    let _ = writeln!(
+        text,
+        "[[pawl]]\nname = \"p\"\nhinge = [\"-2\", \"2\"]\n\
+         vertices = [[\"-2\", \"2\"], [\"-2\", \"{tip}\"]{at}]\nstiffness = \"1\"\n\
+         [[motion]]\nvelocity = [\"1\", \"0\"]\nduration = \"{length}\""
+    );
+    text
+}
+
+/// A long rack: as many units as teeth.
+fn long_rack(teeth: usize) -> String {
+    row(teeth, teeth, CORNERS)
+}
+
+/// Dense obstacles: fine teeth, all within reach as the pawl passes over eight units of them.
+fn comb(teeth: usize) -> String {
+    row(teeth, 8, CORNERS)
+}
+
+/// Corners of the pawl that the long scenes have.
+const CORNERS: usize = 12;
+
+fn read(text: &str) -> SceneFile {
+    match read_scene("growth", text) {
         Ok(file) => file,
         Err(why) => panic!("{why:?}"),
-    };
+    }
+}
+
+/// CPU seconds of a simulation, reading apart: parsing, and the validation that makes sure of simple polygons and
+/// of a clear start, belong to the reading of a file; whatever the motion needs of the obstacles does not.
+fn simulated(text: &str) -> f64 {
+    let file = read(text);
     seconds(|| {
         simulate(file.scene(), &Options::default()).expect("the plan can be carried out");
     })
 }
 
+/// The same by a method and an arithmetic, with what the ledger says.
+fn by(file: &SceneFile, method: By, arithmetic: Arithmetic) -> (f64, Ledger) {
+    let mut ledger = Ledger::default();
+    let s = seconds(|| {
+        let options = Options {
+            method,
+            arithmetic,
+            ..Options::default()
+        };
+        let t = simulate(file.scene(), &options).expect("the plan can be carried out");
+        ledger = t.ledger;
+    });
+    (s, ledger)
+}
+
+/// The simple algorithm as DP states it (all pairs of features, all arcs at every step, exact numbers only), the same
+/// with an index of what is near and enclosures, and the sweep.
+fn methods() {
+    println!(
+        "\n# Methods on a rack: milliseconds, by the simple algorithm bare and with an index, and by the sweep"
+    );
+    println!(" teeth      n    bare   index   sweep");
+    let (mut bare, mut index, mut sweep) = (Vec::new(), Vec::new(), Vec::new());
+    let mut crossover = None;
+    for teeth in sizes(4, 2, 2048) {
+        let file = read(&scene(teeth, 0, 1));
+        let n = (3 * (2 * teeth + 5)) as f64;
+        let a = (teeth <= 64).then(|| by(&file, By::Naive, Arithmetic::Exact).0);
+        let b = by(&file, By::Naive, Arithmetic::Filtered).0;
+        let c = by(&file, By::Sweep, Arithmetic::Filtered).0;
+        bare.extend(a.map(|a| (n, a)));
+        index.push((n, b));
+        sweep.push((n, c));
+        if c < b {
+            crossover.get_or_insert(teeth);
+        } else {
+            crossover = None;
+        }
+        println!(
+            "{teeth:6} {n:6} {:>7} {:7.2} {:7.2}",
+            a.map_or("-".to_owned(), |a| format!("{:.2}", a * 1e3)),
+            b * 1e3,
+            c * 1e3
+        );
+    }
+    let late = |p: &[(f64, f64)]| exponent(&p[p.len() / 2..]);
+    println!(
+        "bare n^{:.2}, index n^{:.2}, sweep n^{:.2} (upper halves); the sweep is ahead from {crossover:?} teeth on",
+        late(&bare),
+        late(&index),
+        late(&sweep)
+    );
+}
+
+/// Racks and combs from 10³ pairs of features on: time and memory of a whole simulation, the size of F.
+fn long_scenes(most: usize) {
+    println!(
+        "\n# Scenes by the sweep, n pairs of features before culling; lambda(n)/n is about 2^alpha(n), at most 16 here"
+    );
+    type Family = (&'static str, fn(usize) -> String);
+    let families: [Family; 2] = [
+        ("rack", |n| long_rack(n / CORNERS / 2 - 1)),
+        ("comb", |n| comb(n / CORNERS / 2 - 1)),
+    ];
+    for (name, make) in families {
+        println!(
+            "{name}       n    arcs     |F|   |F|/n  us/n  build s   run s  peak MB  found by"
+        );
+        let (mut time, mut room) = (Vec::new(), Vec::new());
+        for n in sizes(1000, 10, most) {
+            let file = read(&make(n));
+            let before = peak(true);
+            let (mut s, mut ledger) = (f64::INFINITY, Ledger::default());
+            for _ in 0..if n < 100_000 { 3 } else { 1 } {
+                let from = cpu();
+                let options = Options {
+                    method: By::Sweep,
+                    ..Options::default()
+                };
+                ledger = simulate(file.scene(), &options).expect("a plan").ledger;
+                s = s.min(cpu() - from);
+            }
+            let mb = peak(false) - before;
+            let p = ledger.phases[0];
+            println!(
+                "{name} {n:8} {:7} {:7} {:7.3} {:5.1} {:8.3} {:7.3} {mb:8.1}  {}",
+                p.arcs,
+                p.half_edges,
+                p.half_edges as f64 / n as f64,
+                s / n as f64 * 1e6,
+                p.build,
+                p.run,
+                if p.faces.merged > 0 { "merge" } else { "walk" }
+            );
+            time.push((n as f64, s));
+            room.push((n as f64, mb));
+        }
+        room.retain(|p| p.0 >= 1e4);
+        println!(
+            "{name}: time n^{:.3}, memory n^{:.3}",
+            exponent(&time),
+            exponent(&room)
+        );
+    }
+}
+
+/// F of a slice by the walk and by the merge.
+fn ways() {
+    println!("\n# F of a slice: milliseconds by the walk and by the merge, and what auto takes");
+    type Family = (&'static str, fn(usize) -> String);
+    let families: [Family; 3] = [("rack", long_rack), ("comb", comb), ("wheel", wheel)];
+    for (name, make) in families {
+        for size in sizes(16, 4, 4096) {
+            let file = read(&make(size));
+            let mut seen = None;
+            let options = Options {
+                method: By::Sweep,
+                ..Options::default()
+            };
+            slices(file.scene(), &options, &mut |s| seen = Some(s)).expect("a plan");
+            let Some((slice, free)) = seen.and_then(|s| Some((s.slice, s.free?))) else {
+                println!("{name:6} {size:5}: no F");
+                continue;
+            };
+            let mut edges = 0;
+            let mut time = |way| {
+                seconds(|| {
+                    let f = Free::new(&*slice, free.start(), way).expect("F");
+                    edges = f.half_edges();
+                })
+            };
+            let (walk, merge) = (time(Method::Walk), time(Method::Merge));
+            let auto = Free::new(&*slice, free.start(), Method::Auto)
+                .expect("F")
+                .found();
+            println!(
+                "{name:6} {size:5} {:7} arcs {edges:7} half-edges  walk {:8.2}  merge {:8.2}  ({:.2} x)  {:?}",
+                slice.arcs().len(),
+                walk * 1e3,
+                merge * 1e3,
+                merge / walk,
+                auto.method
+            );
+        }
+    }
+}
+
+/// A pawl of many corners, a star, among many small obstacles that its corners pass again and again: nearly every
+/// pair of features meets somewhere, and hardly anything of it bounds F.
+fn wheel(size: usize) -> String {
+    let mut text = String::from("[scene]\nname = \"wheel\"\n");
+    let posts = size / 8;
+    for i in 0..posts {
+        let _ = writeln!(
+            text,
+            "[[obstacle]]\nname = \"o{i}\"\nvertices = [[\"{x}/16\", \"-3\"], [\"{x}/16\", \"-1.5\"], [\"{}/16\", \"-3\"]]",
+            8 * i + 1,
+            x = 8 * i
+        );
+    }
+    text.push_str("[[pawl]]\nname = \"p\"\nhinge = [\"-4\", \"0\"]\nvertices = [");
+    let corners = 24;
+    for k in 0..corners {
+        // Around the hinge by rational points of the circle, long and short in turn.
+        let (m, r) = (
+            2 * k as i64 - corners as i64 + 1,
+            if k % 2 == 0 { 28 } else { 12 },
+        );
+        let (u, d) = (m, corners as i64 / 2);
+        let den = (d * d + u * u) * 10;
+        let (x, y) = ((d * d - u * u) * r, 2 * u * d * r);
+        let _ = write!(text, "[\"{}/{den}\", \"{y}/{den}\"],", x - 4 * den);
+    }
+    let _ = writeln!(
+        text,
+        "]\nstart = \"0\"\n[[motion]]\nvelocity = [\"1\", \"0\"]\nduration = \"{}/16\"",
+        8 * posts + 128
+    );
+    text
+}
+
 fn scenes() {
-    println!("\n# Scenes, by the simple algorithm with its index of what is near");
+    println!("\n# Scenes");
     let base = simulated(&scene(8, 0, 1));
     let mut points = Vec::new();
     for teeth in sizes(8, 2, 256) {
@@ -307,14 +549,26 @@ fn scenes() {
         println!("{k:3} pawls: {:6.2} x one", s / one);
     }
     println!("pawls: k^{:.2}", exponent(&points));
-    for teeth in [32, 128] {
-        let (near, with) = (
-            simulated(&scene(teeth, 0, 1)),
-            simulated(&scene(teeth, 99 * teeth, 1)),
-        );
+}
+
+/// Nearly all of the obstacle out of reach; the two sizes of scene in turn, so that a busy machine slows both.
+fn far() {
+    println!("\n# 99 % of the obstacle out of reach, reading apart");
+    for teeth in [8, 32, 128, 400] {
+        let [near, with] = [0, 99 * teeth].map(|far| read(&scene(teeth, far, 1)));
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..9 {
+            for (file, best) in [&near, &with].into_iter().zip(&mut best) {
+                let from = cpu();
+                simulate(file.scene(), &Options::default()).expect("a plan");
+                *best = best.min(cpu() - from);
+            }
+        }
         println!(
-            "{teeth} teeth and 99 times as many out of reach: {:.2} x",
-            with / near
+            "{teeth:4} teeth, {:6} out of reach: {:8.3} ms, {:.2} x",
+            99 * teeth,
+            best[1] * 1e3,
+            best[1] / best[0]
         );
     }
 }
@@ -340,5 +594,17 @@ fn main() {
     }
     if wanted("scenes") {
         scenes();
+    }
+    if wanted("far") {
+        far();
+    }
+    if wanted("methods") {
+        methods();
+    }
+    if wanted("long") {
+        long_scenes(most);
+    }
+    if wanted("ways") {
+        ways();
     }
 }

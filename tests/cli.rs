@@ -347,3 +347,69 @@ fn the_reference_gives_the_same_verdicts_and_forces() {
         }
     }
 }
+
+/// A file of another kind is named as what it is, in one line.
+#[test]
+fn a_file_of_another_kind_is_named() {
+    let folder = folder("guise");
+    let structure = folder.join("s.toml");
+    let at = |p: &PathBuf| p.to_string_lossy().into_owned();
+    let made = snapfit(&[
+        "generate",
+        "grid",
+        "--bodies",
+        "4",
+        "--out",
+        &at(&structure),
+    ]);
+    assert_eq!(made.status.code(), Some(0), "{}", stderr(&made));
+    let result = folder.join("r.json");
+    snapfit(&["simulate", PINS, "--out", &at(&result)]);
+    for (verb, file, word) in [
+        ("simulate", at(&structure), "this is a structure"),
+        ("flex", PINS.to_owned(), "this is a scene"),
+        ("simulate", at(&result), "this is a result"),
+        ("flex", at(&result), "this is a result"),
+    ] {
+        let output = snapfit(&[verb, &file]);
+        assert_eq!(output.status.code(), Some(2), "{verb} {file}");
+        let said = stderr(&output);
+        assert!(said.contains(word) && said.lines().count() == 1, "{said}");
+    }
+}
+
+#[test]
+fn negative_options_are_refused_in_words() {
+    let output = snapfit(&["simulate", PINS, "--time-limit", "-1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("not negative"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// No input is written over, and no two results go to one file.
+#[test]
+fn inputs_and_results_are_spared() {
+    let folder = folder("spared");
+    let scene = folder.join("s.toml");
+    fs::copy(PINS, &scene).unwrap();
+    let before = fs::read(&scene).unwrap();
+    let (scene, other) = (
+        scene.to_string_lossy().into_owned(),
+        folder.join("x").to_string_lossy().into_owned(),
+    );
+    for args in [
+        &["trade", &scene, "--fast", "-o", &scene][..],
+        &["trade", &scene, "--fast", "--svg", &scene],
+        &["forces", &scene, "--svg", &scene],
+        &["forces", &scene, "--svg", &other, "-o", &other],
+        &["classify", &scene, "--svg", &other, "-o", &other],
+    ] {
+        let output = snapfit(args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(stderr(&output).contains("lost"), "{}", stderr(&output));
+    }
+    assert_eq!(fs::read(&scene).unwrap(), before);
+}

@@ -261,7 +261,7 @@ fn a_result_in_doubles_carries_no_exact_number() {
     let arithmetic = Arithmetic::F64(FloatOptions::default());
     let how = Provenance {
         arithmetic: arithmetic.name(),
-        method: "naive",
+        method: Method::Naive,
     };
     let text = ResultDocument::new(&scene, &run(&scene, arithmetic), how)
         .to_text()

@@ -323,6 +323,61 @@ fn outer_bounds_hold_what_safe_paths_reach() {
     assert!(outer_bound(&s, None).is_err(), "nothing holds it");
 }
 
+/// What the bound is a bound of: safe paths that were led elsewhere on the way (other weights, then
+/// the one asked) reach nothing beyond it.
+#[test]
+fn no_feasible_flex_is_beyond_the_outer_bound() {
+    let mut seed = 7i64;
+    let mut draw = move || {
+        seed = (seed * 1_103_515_245 + 12_345) & 0x7fff_ffff;
+        seed / 65_536 % 7 - 3
+    };
+    for (family, bodies) in [("grid", 4), ("jit", 4), ("jrot", 4), ("chain", 3)] {
+        let mut s = generate(family, bodies, 5).unwrap();
+        s.step.path = Path::Safe;
+        s.step.gain = r(1, 10_000);
+        let asked = s.objective.clone();
+        let outer = outer_bound(&s, None).unwrap().value;
+        let weight = |flexed: &[Pose]| -> Rat {
+            let mut sum = Rat::zero();
+            for t in &asked {
+                let Term::Body { body, dx, dy, .. } = t else {
+                    panic!("{family}: its objective moves bodies")
+                };
+                let (at, from) = (&flexed[*body], Pose::of(&s.bodies[*body]));
+                let moved = &at.place - &from.place;
+                sum = sum + dx * &moved.x + dy * &moved.y;
+            }
+            sum
+        };
+        let mut best = Rat::zero();
+        for _ in 0..2 + common::count(100) / 10 {
+            let mut other = s.clone();
+            let last = other.bodies.len() - 1;
+            other.objective = vec![moves(last, draw(), draw()), moves(last / 2, draw(), 1)];
+            let away = flex(&other, &FlexOptions::default());
+            let there = away.configurations.last().unwrap();
+            for poses in &away.configurations {
+                let reached = weight(poses);
+                assert!(reached <= outer, "{family}: {reached} > {outer}");
+                best = best.max(reached);
+            }
+            // And from there as far as it goes in the direction asked.
+            let mut on = s.clone();
+            for (b, pose) in on.bodies.iter_mut().zip(there) {
+                b.position = pose.position(b);
+                b.tan_half = pose.tan_half.clone();
+            }
+            for poses in &flex(&on, &FlexOptions::default()).configurations {
+                let reached = weight(poses);
+                assert!(reached <= outer, "{family}: {reached} > {outer}");
+                best = best.max(reached);
+            }
+        }
+        assert!(best >= &outer * &r(3, 4), "{family}: {best} of {outer}");
+    }
+}
+
 /// Two squares corner to corner: an averaged half-plane forbids what one of the edges allows, and
 /// branching finds the best of all choices.
 #[test]

@@ -1,5 +1,5 @@
 //! What must not change, or change in a known way, when a scene is written or placed differently.
-//! Outcomes, kinds, times and orientations are compared exactly.
+//! Outcomes, kinds, times and orientations are compared exactly, and every scene runs by both methods.
 
 #![allow(clippy::unwrap_used)]
 
@@ -18,7 +18,7 @@ use snapfit::number::{Algebraic, Int, Poly, Rat};
 use snapfit::scene::{Motion, Obstacle, Scene};
 use snapfit::slice::Time;
 use std::cmp::Ordering;
-use world::compare::engine;
+use world::compare::by_both as engine;
 use world::oracle::f;
 use world::rng::Rng;
 use world::scenes::{Recipe, random_scene, starts_free};

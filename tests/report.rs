@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use serde_json::Value;
-use snapfit::motion::{Options, simulate};
+use snapfit::motion::{Method, Options, simulate};
 use snapfit::number::{Algebraic, Int, Poly, Rat};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
 use snapfit::report::summary::{Style, summary};
@@ -25,7 +25,7 @@ fn document(text: &str) -> (snapfit::scene::Scene, ResultDocument) {
     let trajectory = simulate(&scene, &Options::default()).unwrap();
     let how = Provenance {
         arithmetic: "exact",
-        method: "sweep",
+        method: Method::Sweep,
     };
     let document = ResultDocument::new(&scene, &trajectory, how);
     (scene, document)

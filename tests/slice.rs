@@ -30,7 +30,7 @@ fn told(scene: &Scene, method: Method) -> (String, u64) {
     let t = simulate(scene, &options).unwrap();
     let how = Provenance {
         arithmetic: "filtered",
-        method: "either",
+        method: Method::Naive,
     };
     let swept = t.ledger.phases.iter().map(|p| p.swept).sum();
     let doc = ResultDocument::new(scene, &t, how);

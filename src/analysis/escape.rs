@@ -14,7 +14,8 @@ use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
 use crate::kernel::Certified;
 use crate::motion::phase::{Run, Setting, run};
-use crate::motion::root::{first_collision, obstacle_polygon};
+use crate::motion::root::first_collision;
+use crate::motion::solids::Solids;
 use crate::motion::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
 };
@@ -105,7 +106,7 @@ pub struct Ground<'a> {
     pub shapes: Vec<PawlShape>,
     /// The obstacles' rings.
     pub obstacles: Vec<ObstacleShape>,
-    fixed: Vec<Polygon>,
+    fixed: Solids<'a>,
     turning: Vec<Polygon>,
     /// When to give up, undecided.
     pub deadline: Option<Instant>,
@@ -120,10 +121,10 @@ impl<'a> Ground<'a> {
         Ground {
             scene,
             obstacles: scene.obstacles.iter().map(ObstacleShape::new).collect(),
-            fixed: scene.obstacles.iter().map(obstacle_polygon).collect(),
+            fixed: Solids::new(&scene.obstacles),
             turning: shapes
                 .iter()
-                .map(|s| Polygon::new(s.ring.vertices.clone(), Vec::new()))
+                .map(|s| Polygon::new(s.ring.vertices.to_vec(), Vec::new()))
                 .collect(),
             shapes,
             deadline,
@@ -202,6 +203,7 @@ impl<'a> Ground<'a> {
                     stop: &stop,
                     method: crate::motion::Method::Naive,
                     known: None,
+                    face: crate::face::Method::Auto,
                 };
                 let angle = Angle {
                     half_turn: start.angles[i].half_turn,

@@ -196,7 +196,7 @@ fn standing(value: &Int, scale: &Int, range: &Range, name: &str) -> Result<Stand
 }
 
 /// A point: columns over one denominator, activities over one each.
-struct Point {
+pub(super) struct Point {
     x: Vec<Int>,
     denominator: Int,
     /// Σ aᵢⱼ xⱼ times denominator times the row's factor.
@@ -205,7 +205,7 @@ struct Point {
 }
 
 impl Point {
-    fn new(model: &Model, v: &Vector) -> Result<Point, Rejection> {
+    pub(super) fn new(model: &Model, v: &Vector) -> Result<Point, Rejection> {
         let (x, denominator) = integers(v, model.columns.len())?;
         let mut factor = vec![Int::one(); model.rows.len()];
         for c in &model.columns {
@@ -244,7 +244,7 @@ impl Point {
         standing(&self.activity[i], &scale, &r.range, &r.name)
     }
 
-    fn feasible(&self, model: &Model) -> Result<(), Rejection> {
+    pub(super) fn feasible(&self, model: &Model) -> Result<(), Rejection> {
         for j in 0..model.columns.len() {
             self.column(model, j)?;
         }
@@ -268,7 +268,7 @@ impl Point {
         Rat::new(sum, &scale * &self.denominator)
     }
 
-    fn objective(&self, model: &Model) -> Rat {
+    pub(super) fn objective(&self, model: &Model) -> Rat {
         &model.constant + &self.slope(model)
     }
 
@@ -297,13 +297,13 @@ impl Point {
 }
 
 /// Prices of the rows over one denominator.
-struct Prices {
+pub(super) struct Prices {
     y: Vec<Int>,
     denominator: Int,
 }
 
 impl Prices {
-    fn new(model: &Model, v: &Vector) -> Result<Prices, Rejection> {
+    pub(super) fn new(model: &Model, v: &Vector) -> Result<Prices, Rejection> {
         let (y, denominator) = integers(v, model.rows.len())?;
         Ok(Prices { y, denominator })
     }
@@ -401,7 +401,7 @@ impl Prices {
     }
 
     /// The bound on the objective: c·x = (c − Aᵀy)·x + y·s at its least (greatest).
-    fn bound(&self, model: &Model) -> Result<Rat, Rejection> {
+    pub(super) fn bound(&self, model: &Model) -> Result<Rat, Rejection> {
         let (low, high) = self.extent(model, true);
         match if model.maximise { high } else { low } {
             Some(v) => Ok(&model.constant + &v),

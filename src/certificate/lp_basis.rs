@@ -9,8 +9,8 @@
 //! If all N ≡ D·X nearest to zero are so small that the kernel's equations hold as integers below
 //! qᴷ, they hold. Signs come from the leading digits, zeros from the residues.
 //!
-//! Every step is plain 64-bit arithmetic modulo a 31-bit prime fixed at compile time. A bad order,
-//! place or denominator can only lead to rejection.
+//! Every step is plain arithmetic on machine words modulo a 31-bit prime fixed at compile time. A
+//! bad order, place or denominator can only lead to rejection.
 
 use super::lp::{Rejection, lcm, reject};
 use crate::lp::{Model, Place};
@@ -30,6 +30,10 @@ const SECOND: u64 = 2_147_483_629;
 const NONE: u32 = u32::MAX;
 /// Bits of a digit, rounded down.
 const DIGIT: u64 = 30;
+/// Components of a solution that are worked on together.
+const BLOCK: usize = 64;
+/// Bits that the largest row or column sum of sizes may have.
+const NORM: u64 = 2000;
 
 /// The exact objective at the basis, once it is shown to be optimal.
 pub(super) fn objective(model: &Model, evidence: &Evidence<'_>) -> Result<Rat, Rejection> {
@@ -56,7 +60,7 @@ fn no<T>(why: &str) -> Result<T, Trouble> {
     Err(Trouble::No(Rejection(why.to_string())))
 }
 
-type Line = Vec<(u32, i64)>;
+type Line = Vec<(u32, Int)>;
 
 /// The scaled program and the kernel's shape.
 struct Check<'a> {
@@ -92,29 +96,23 @@ impl<'a> Check<'a> {
         }
         let mut rows: Vec<Line> = vec![Vec::new(); m];
         let mut columns: Vec<Line> = Vec::with_capacity(n);
-        let mut row_sum = vec![0i64; m];
+        let mut row_sum = vec![Int::zero(); m];
         let mut norm = 1;
         for (j, c) in model.columns.iter().enumerate() {
             let mut column = Vec::with_capacity(c.entries.len());
-            let mut sum = 0i64;
+            let mut sum = Int::zero();
             for (i, a) in &c.entries {
                 let v = a.numer() * &row_scale[*i as usize].div_exact(a.denom());
-                let Some(v) = v.to_i64().filter(|v| v.unsigned_abs() < 1 << 58) else {
-                    return reject("coefficients are too long for this kind of certificate");
-                };
-                let total = &mut row_sum[*i as usize];
-                *total = total.saturating_add(v.abs());
-                sum = sum.saturating_add(v.abs());
-                rows[*i as usize].push((j as u32, v));
+                row_sum[*i as usize] += &v.abs();
+                sum += &v.abs();
+                rows[*i as usize].push((j as u32, v.clone()));
                 column.push((*i, v));
             }
-            norm = norm.max(64 - u64::from(sum.leading_zeros()));
+            norm = norm.max(sum.bits());
             columns.push(column);
         }
-        for s in row_sum {
-            norm = norm.max(64 - u64::from(s.leading_zeros()));
-        }
-        if norm > 60 {
+        norm = row_sum.iter().fold(norm, |b, s| b.max(s.bits()));
+        if norm > NORM {
             return reject("coefficients are too long for this kind of certificate");
         }
         let mut bound_scale = Int::one();
@@ -239,8 +237,8 @@ impl<'a> Check<'a> {
             if self.place(j) != Place::Basic {
                 let v = self.resting(j)?;
                 if !v.is_zero() {
-                    for &(i, a) in &self.columns[j] {
-                        known[i as usize] += &(&v * &Int::from(a));
+                    for (i, a) in &self.columns[j] {
+                        known[*i as usize] += &(&v * a);
                     }
                 }
             }
@@ -252,7 +250,9 @@ impl<'a> Check<'a> {
         }
         let lines = |steps: &[u32], line: &Line| -> Line {
             let inside = line.iter().filter(|e| steps[e.0 as usize] != NONE);
-            inside.map(|&(k, a)| (steps[k as usize], a)).collect()
+            inside
+                .map(|(k, a)| (steps[*k as usize], a.clone()))
+                .collect()
         };
         let order = self.evidence.order;
         let row_lines = order
@@ -273,7 +273,7 @@ impl<'a> Check<'a> {
                 continue;
             }
             let (terms, constant) = if v < n {
-                (vec![(self.column_step[v], 1)], Int::zero())
+                (vec![(self.column_step[v], Int::one())], Int::zero())
             } else {
                 let i = v - n;
                 (lines(&self.column_step, &self.rows[i]), -known[i].clone())
@@ -325,7 +325,7 @@ impl<'a> Check<'a> {
                 // c − a·Y, asked as −(a·Y − c)
                 -prices.sign::<Q>(&lines(&self.row_step, &self.columns[v]), &self.cost(v))
             } else {
-                prices.sign::<Q>(&[(self.row_step[v - n], 1)], &Int::zero())
+                prices.sign::<Q>(&[(self.row_step[v - n], Int::one())], &Int::zero())
             };
             let good = match self.place(v) {
                 Place::Lower => sign * turn >= 0,
@@ -355,10 +355,10 @@ impl<'a> Check<'a> {
         let mut seen = vec![false; size];
         let mut heap = std::collections::BinaryHeap::new();
         for (k, &(i, _)) in self.evidence.order.iter().enumerate() {
-            for &(j, a) in &self.rows[i as usize] {
-                let s = self.column_step[j as usize];
+            for (j, a) in &self.rows[i as usize] {
+                let s = self.column_step[*j as usize];
                 if s != NONE {
-                    value[s as usize] = a.rem_euclid(Q as i64) as u64;
+                    value[s as usize] = a.mod_u64(Q);
                     seen[s as usize] = true;
                     heap.push(std::cmp::Reverse(s));
                 }
@@ -465,6 +465,8 @@ struct Digits {
     leading: Vec<Int>,
     low: usize,
     error: Int,
+    /// ⌊D/Q^low⌋.
+    high: Int,
 }
 
 fn base<const Q: u64>(v: &Int) -> Vec<u64> {
@@ -497,6 +499,163 @@ fn centred(v: &Int, modulus: &Int) -> Int {
     if r.shl(1) > *modulus { r - modulus } else { r }
 }
 
+/// Lines of integers in two's complement, each in as many words as all residues need.
+struct Wide {
+    limbs: usize,
+    start: Vec<usize>,
+    index: Vec<u32>,
+    words: Vec<u64>,
+}
+
+impl Wide {
+    fn new(lines: &[Line]) -> Wide {
+        let sum = |l: &Line| l.iter().fold(Int::zero(), |s, (_, a)| s + a.abs()).bits();
+        let norm = lines.iter().map(sum).max().unwrap_or(0);
+        // A residue is below the line's sum; with a digit's multiple subtracted, 32 bits longer.
+        let limbs = (norm as usize + 36).div_ceil(64);
+        let mut wide = Wide {
+            limbs,
+            start: vec![0],
+            index: Vec::new(),
+            words: Vec::new(),
+        };
+        let modulus = Int::one().shl(64 * limbs as u64);
+        for line in lines {
+            for (j, a) in line {
+                wide.index.push(*j);
+                let mut rest = a.div_rem_floor(&modulus).1;
+                for _ in 0..limbs {
+                    wide.words
+                        .push(rest.mod_u64(1 << 32) | rest.shr(32).mod_u64(1 << 32) << 32);
+                    rest = rest.shr(64);
+                }
+            }
+            wide.start.push(wide.index.len());
+        }
+        wide
+    }
+
+    /// r −= Σ a·x over line i.
+    fn subtract(&self, r: &mut [u64], i: usize, x: &[u64]) {
+        for e in self.start[i]..self.start[i + 1] {
+            let x = x[self.index[e] as usize];
+            let words = &self.words[e * self.limbs..(e + 1) * self.limbs];
+            let (mut carry, mut borrow) = (0u64, false);
+            for (t, &a) in r.iter_mut().zip(words) {
+                let product = u128::from(a) * u128::from(x) + u128::from(carry);
+                carry = (product >> 64) as u64;
+                let (s, first) = t.overflowing_sub(product as u64);
+                let (s, second) = s.overflowing_sub(u64::from(borrow));
+                (*t, borrow) = (s, first | second);
+            }
+        }
+    }
+}
+
+/// r += v.
+fn add_signed(r: &mut [u64], v: i64) {
+    let fill = (v >> 63) as u64;
+    let mut carry = false;
+    for (k, t) in r.iter_mut().enumerate() {
+        let (s, first) = t.overflowing_add(if k == 0 { v as u64 } else { fill });
+        let (s, second) = s.overflowing_add(u64::from(carry));
+        (*t, carry) = (s, first | second);
+    }
+}
+
+/// r modulo Q, of two's complement.
+fn remainder<const Q: u64>(r: &[u64]) -> u64 {
+    let Some((&top, rest)) = r.split_last() else {
+        return 0;
+    };
+    let base = ((1u128 << 64) % u128::from(Q)) as u64;
+    let mut v = (top as i64).rem_euclid(Q as i64) as u64;
+    for &w in rest.iter().rev() {
+        v = (v * base + w % Q) % Q;
+    }
+    v
+}
+
+/// r /= Q, of two's complement, for a multiple of Q.
+fn divide<const Q: u64>(r: &mut [u64]) {
+    let mut inverse = Q; // Newton: right bits 3, 6, 12, 24, 48, 96
+    for _ in 0..5 {
+        inverse = inverse.wrapping_mul(2u64.wrapping_sub(Q.wrapping_mul(inverse)));
+    }
+    let mut borrow = 0u64;
+    for w in r {
+        let (t, under) = w.overflowing_sub(borrow);
+        *w = t.wrapping_mul(inverse);
+        borrow = ((u128::from(*w) * u128::from(Q)) >> 64) as u64 + u64::from(under);
+    }
+}
+
+/// The digits of D·X from a place on, carries not yet taken.
+struct Window {
+    denominator: Vec<u64>,
+    low: usize,
+    sums: Vec<Vec<u128>>,
+}
+
+/// What lies below a window can carry into it at most this.
+fn error<const Q: u64>(low: usize) -> Int {
+    Int::from(Q) * Int::from(low as u64)
+}
+
+impl Window {
+    /// Widens to all digits there are.
+    fn extend(&mut self, digits: &[Vec<u32>]) {
+        let size = digits.first().map_or(0, Vec::len);
+        let done = self.low + self.sums.len();
+        self.sums.resize(digits.len() - self.low, vec![0; size]);
+        // Block by block, so that the digits of a block stay in the cache.
+        for start in (0..size).step_by(BLOCK) {
+            let block = start..(start + BLOCK).min(size);
+            for top in done..digits.len() {
+                let sum = &mut self.sums[top - self.low][block.clone()];
+                let x = |at: usize| &digits[at][block.clone()];
+                // Four products of two digits fit a word.
+                let take = self.denominator.len().min(top + 1);
+                for (group, d) in self.denominator[..take].chunks(4).enumerate() {
+                    let at = top - 4 * group;
+                    if let [a, b, c, e] = *d {
+                        let (w, x, y, z) = (x(at), x(at - 1), x(at - 2), x(at - 3));
+                        for (j, s) in sum.iter_mut().enumerate() {
+                            let first = a * u64::from(w[j]) + b * u64::from(x[j]);
+                            let second = c * u64::from(y[j]) + e * u64::from(z[j]);
+                            *s += u128::from(first + second);
+                        }
+                    } else {
+                        for (i, &d) in d.iter().enumerate() {
+                            for (s, &x) in sum.iter_mut().zip(x(at - i)) {
+                                *s += u128::from(d * u64::from(x));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The leading digits of D·X modulo Qᴷ, if they show every |N| small enough.
+    fn leading<const Q: u64>(&self, norm: u64) -> Option<Vec<Int>> {
+        let modulus = Int::from(Q).pow(self.sums.len() as u32);
+        let limit = modulus.bits().checked_sub(norm + 6)?;
+        let error = error::<Q>(self.low).bits();
+        let size = self.sums.first().map_or(0, Vec::len);
+        let mut leading = Vec::with_capacity(size);
+        for j in 0..size {
+            let parts: Vec<Int> = self.sums.iter().map(|s| Int::from(s[j] as i128)).collect();
+            let v = centred(&join::<Q>(&parts), &modulus);
+            if v.bits().max(error) + 1 > limit {
+                return None;
+            }
+            leading.push(v);
+        }
+        Some(leading)
+    }
+}
+
 impl Digits {
     /// Lifts G·X = b until the residues of D·X prove themselves.
     fn lift<const Q: u64>(
@@ -510,35 +669,55 @@ impl Digits {
         let rhs_bits = rhs.iter().map(Int::bits).max().unwrap_or(0);
         // Room for Σ|a|·|N| and D·|constant| in every question asked.
         let room = 2 * norm.max(rhs_bits) + 40;
-        let precision = 8 + d.bits() / (DIGIT * 16);
+        let precision = 8 + d.bits() / (DIGIT * 32);
         let mut count = ((d.bits() + room) / DIGIT + 2) as usize;
         let signs: Vec<i64> = rhs.iter().map(|b| i64::from(b.sign())).collect();
         let feed: Vec<Vec<u64>> = rhs.iter().map(base::<Q>).collect();
-        let mut residue = vec![0i128; size];
+        let wide = Wide::new(lines);
+        let limbs = wide.limbs;
+        let mut residue = vec![0u64; size * limbs];
         let mut digits: Vec<Vec<u32>> = Vec::new();
         let mut work = vec![0u64; size];
+        let width = (room / DIGIT + precision) as usize + 3;
+        let mut window = Window {
+            denominator: base::<Q>(d),
+            low: count.saturating_sub(width),
+            sums: Vec::new(),
+        };
         for attempt in 0.. {
             while digits.len() < count {
                 let k = digits.len();
-                for (i, r) in residue.iter_mut().enumerate() {
+                for (i, r) in residue.chunks_exact_mut(limbs).enumerate() {
                     if let Some(&f) = feed[i].get(k) {
-                        *r += i128::from(signs[i] * f as i64);
+                        add_signed(r, signs[i] * f as i64);
                     }
-                    work[i] = r.rem_euclid(i128::from(Q)) as u64;
+                    work[i] = remainder::<Q>(r);
                 }
                 solve(&mut work);
-                for (i, r) in residue.iter_mut().enumerate() {
-                    for &(j, a) in &lines[i] {
-                        *r -= i128::from(a) * i128::from(work[j as usize]);
-                    }
-                    *r /= i128::from(Q);
+                for (i, r) in residue.chunks_exact_mut(limbs).enumerate() {
+                    wide.subtract(r, i, &work);
+                    divide::<Q>(r);
                 }
                 digits.push(work.iter().map(|&v| v as u32).collect());
             }
-            let width =
-                ((room / DIGIT + precision) as usize + 3 + (attempt as usize) * 4).min(count);
-            if let Some(proven) = Digits::prove::<Q>(&digits, d, width, norm.max(rhs_bits)) {
-                return Ok(Digits { digits, ..proven });
+            window.extend(&digits);
+            if let Some(leading) = window.leading::<Q>(norm.max(rhs_bits)) {
+                let low = window.low;
+                let top = window.denominator.get(low..).unwrap_or(&[]);
+                let top: Vec<Int> = top.iter().map(|&v| Int::from(v)).collect();
+                return Ok(Digits {
+                    high: join::<Q>(&top),
+                    digits,
+                    denominator: d.clone(),
+                    denominator_digits: window.denominator,
+                    leading,
+                    low,
+                    error: if low == 0 {
+                        Int::zero()
+                    } else {
+                        error::<Q>(low)
+                    },
+                });
             }
             if attempt == 6 {
                 return no("a denominator is wrong");
@@ -548,62 +727,20 @@ impl Digits {
         no("a denominator is wrong")
     }
 
-    /// The leading digits of D·X modulo Qᴷ, if they show every |N| small enough.
-    fn prove<const Q: u64>(
-        digits: &[Vec<u32>],
-        d: &Int,
-        width: usize,
-        norm: u64,
-    ) -> Option<Digits> {
-        let count = digits.len();
-        let low = count - width;
-        let size = digits.first().map_or(0, Vec::len);
-        let d_digits = base::<Q>(d);
-        let modulus = Int::from(Q).pow(width as u32);
-        let limit = modulus.bits().checked_sub(norm + 6)?;
-        let error = Int::from(Q) * Int::from(low as u64);
-        let mut sums = vec![vec![0u128; size]; width];
-        for (t, sum) in sums.iter_mut().enumerate() {
-            for (i, &d) in d_digits.iter().enumerate().take(low + t + 1) {
-                for (s, &x) in sum.iter_mut().zip(&digits[low + t - i]) {
-                    *s += u128::from(d * u64::from(x));
-                }
-            }
-        }
-        let mut leading = Vec::with_capacity(size);
-        for j in 0..size {
-            let parts: Vec<Int> = sums.iter().map(|s| Int::from(s[j] as i128)).collect();
-            let v = centred(&join::<Q>(&parts), &modulus);
-            if v.bits().max(error.bits()) + 1 > limit {
-                return None;
-            }
-            leading.push(v);
-        }
-        Some(Digits {
-            digits: Vec::new(),
-            denominator: d.clone(),
-            denominator_digits: d_digits,
-            leading,
-            low,
-            error: if low == 0 { Int::zero() } else { error },
-        })
-    }
-
     /// The sign of Σ a·X − c.
-    fn sign<const Q: u64>(&self, terms: &[(u32, i64)], constant: &Int) -> i32 {
+    fn sign<const Q: u64>(&self, terms: &[(u32, Int)], constant: &Int) -> i32 {
         if terms.is_empty() {
             return -constant.sign();
         }
         let mut sum = Int::zero();
-        let mut spread = 0i128;
-        for &(k, a) in terms {
-            sum += &(&self.leading[k as usize] * &Int::from(a));
-            spread += i128::from(a).abs();
+        let mut spread = Int::zero();
+        for (k, a) in terms {
+            sum += &(&self.leading[*k as usize] * a);
+            spread += &a.abs();
         }
-        let mut off = Int::from(spread) * self.error.clone();
+        let mut off = spread * self.error.clone();
         if !constant.is_zero() {
-            let high = self.high::<Q>(self.low);
-            sum -= &(&high * constant);
+            sum -= &(&self.high * constant);
             if self.low > 0 {
                 off += &constant.abs();
             }
@@ -612,20 +749,24 @@ impl Digits {
             return sum.sign();
         }
         // Σ a·X − c modulo Qᴷ, digit by digit.
-        let sign = i128::from(constant.sign());
+        let sign = i64::from(constant.sign());
         let feed = base::<Q>(constant);
-        let mut carry = 0i128;
+        let q = Int::from(Q);
+        let mut carry = Int::zero();
         let mut zero = true;
         let mut residue = Vec::with_capacity(self.digits.len());
         for (k, x) in self.digits.iter().enumerate() {
-            carry -= sign * i128::from(feed.get(k).copied().unwrap_or(0));
-            for &(j, a) in terms {
-                carry += i128::from(a) * i128::from(x[j as usize]);
+            if let Some(&f) = feed.get(k) {
+                carry -= &Int::from(sign * f as i64);
             }
-            let r = carry.rem_euclid(i128::from(Q));
+            for (j, a) in terms {
+                carry += &(a * &Int::from(i64::from(x[*j as usize])));
+            }
+            let (rest, r) = carry.div_rem_floor(&q);
+            let r = r.to_i64().unwrap_or(0) as u64;
             zero &= r == 0;
-            residue.push(r as u64);
-            carry = (carry - r) / i128::from(Q);
+            residue.push(r);
+            carry = rest;
         }
         if zero {
             return 0;
@@ -648,13 +789,6 @@ impl Digits {
             }
             width *= 2;
         }
-    }
-
-    /// ⌊D/Q^low⌋.
-    fn high<const Q: u64>(&self, low: usize) -> Int {
-        let parts = self.denominator_digits.get(low..).unwrap_or(&[]);
-        let parts: Vec<Int> = parts.iter().map(|&v| Int::from(v)).collect();
-        join::<Q>(&parts)
     }
 
     /// Σ a·X exactly.

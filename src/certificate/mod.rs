@@ -3,3 +3,4 @@
 
 pub mod lp;
 mod lp_basis;
+pub mod lp_result;

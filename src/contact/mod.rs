@@ -20,8 +20,8 @@ mod trig;
 mod window;
 
 pub use cone::Cones;
-pub use patch::{Frame, Patch, patches, patches_within};
-pub use shape::{ObstacleShape, PawlShape, Ring};
+pub use patch::{Frame, Pair, Patch, pairs_within, patches};
+pub use shape::{Convexity, Normals, ObstacleShape, PawlShape, Ring};
 pub use trig::{Chart, Trig};
 
 /// A contact between a feature of a pawl and a feature of an obstacle, or with an angular stop.

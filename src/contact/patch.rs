@@ -18,7 +18,8 @@ pub struct Frame<R = Rat> {
 }
 
 impl<R: Scalar> Frame<R> {
-    fn enclosed(&self) -> Frame<Enclosed> {
+    /// In certified intervals.
+    pub fn enclosed(&self) -> Frame<Enclosed> {
         Frame {
             p0: self.p0.enclosed(),
             v: self.v.enclosed(),
@@ -48,6 +49,15 @@ pub struct Patch<R = Rat> {
     pub flush: [(u32, u32); 2],
     /// In which charts it may be met within the phase.
     pub charts: [bool; 2],
+    /// For intervals: whether a wedge condition certainly ends exactly where the curve turns back in time (type B: the
+    /// pawl's edge is square to its arm) or goes to infinity (type A: the obstacle's edge runs along the
+    /// motion).
+    pub squared: bool,
+}
+
+/// Whether one of two numbers is certainly zero; asked of intervals alone, since nothing else needs to know.
+fn certainly_zero<R: Scalar>(x: impl Fn() -> [R; 2]) -> bool {
+    R::ROUGH && x().iter().any(|x| x.interval() == Interval::point(0.0))
 }
 
 /// R_θ a · n as a function of θ.
@@ -126,41 +136,38 @@ pub fn patches<R: Scalar>(
 ) -> Vec<Patch<R>> {
     let mut out = Vec::new();
     pairs(frame, pawl, obstacles, &mut |p| {
-        let oring = &obstacles[p.o].rings[p.r];
-        out.push(p.patch(frame, pawl, oring));
+        out.push(p.patch(frame, pawl, obstacles));
     });
     out
 }
 
-/// As [`patches`], but without those that certainly cannot be met within the phase, and with the
-/// charts in which the others may be; decided in intervals before an exact number is made.
-pub fn patches_within<R: Scalar>(
+/// Visits the pairs of features that may be met within the phase. Where numbers are exact and doubles may
+/// settle questions, each comes with its patch in certified intervals, and those that certainly cannot be met are
+/// left out.
+pub fn pairs_within<R: Scalar>(
     frame: &Frame<R>,
     pawl: &PawlShape<R>,
     obstacles: &[ObstacleShape<R>],
-) -> Vec<Patch<R>> {
+    visit: &mut dyn FnMut(Pair, Option<Patch<Enclosed>>),
+) {
     if !R::EXACT || !filter::on() {
-        return patches(frame, pawl, obstacles);
+        return pairs(frame, pawl, obstacles, &mut |p| visit(p, None));
     }
     let duration = frame.duration.interval().hi;
     let near = frame.enclosed();
-    let body = PawlShape {
-        ring: pawl.ring.rough().clone(),
-    };
-    let mut out = Vec::new();
+    let body = pawl.ring.rough();
     pairs(frame, pawl, obstacles, &mut |p| {
-        let rough = p.patch(&near, &body, obstacles[p.o].rings[p.r].rough());
+        let rough = p.of_rings(&near, body, obstacles[p.o].rings[p.r].rough());
         let charts = window::charts(&rough, duration);
         if charts != [false; 2] {
-            let patch = p.patch(frame, pawl, &obstacles[p.o].rings[p.r]);
-            out.push(Patch { charts, ..patch });
+            visit(p, Some(Patch { charts, ..rough }));
         }
     });
-    out
 }
 
 /// A pair of features within reach of each other.
-struct Pair {
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
     kind: ContactKind,
     o: usize,
     r: usize,
@@ -172,7 +179,16 @@ struct Pair {
 }
 
 impl Pair {
-    fn patch<R: Scalar>(&self, frame: &Frame<R>, pawl: &PawlShape<R>, oring: &Ring<R>) -> Patch<R> {
+    /// Its patch.
+    pub fn patch<R: Scalar>(
+        &self,
+        frame: &Frame<R>,
+        pawl: &PawlShape<R>,
+        obstacles: &[ObstacleShape<R>],
+    ) -> Patch<R> {
+        self.of_rings(frame, &pawl.ring, &obstacles[self.o].rings[self.r])
+    }
+    fn of_rings<R: Scalar>(&self, frame: &Frame<R>, ring: &Ring<R>, oring: &Ring<R>) -> Patch<R> {
         let Pair {
             o,
             r,
@@ -182,8 +198,8 @@ impl Pair {
             ..
         } = *self;
         match self.kind {
-            ContactKind::B => type_b(frame, pawl, oring, o, r, i, j, edge_base),
-            ContactKind::A => type_a(frame, pawl, oring, o, r, i, j, edge_base),
+            ContactKind::B => type_b(frame, ring, oring, o, r, i, j, edge_base),
+            ContactKind::A => type_a(frame, ring, oring, o, r, i, j, edge_base),
         }
     }
 }
@@ -193,7 +209,7 @@ fn pairs<R: Scalar>(
     frame: &Frame<R>,
     pawl: &PawlShape<R>,
     obstacles: &[ObstacleShape<R>],
-    visit: &mut dyn FnMut(&Pair),
+    visit: &mut dyn FnMut(Pair),
 ) {
     let ring = &pawl.ring;
     let m = ring.len();
@@ -223,7 +239,7 @@ fn pairs<R: Scalar>(
                 if d2.lo <= reach2 {
                     for (i, r2) in radius2.iter().enumerate() {
                         if ring.convex[i] && d2.lo <= r2.hi && d2.hi >= r2.lo {
-                            visit(&Pair {
+                            visit(Pair {
                                 kind: ContactKind::B,
                                 o,
                                 r,
@@ -239,7 +255,7 @@ fn pairs<R: Scalar>(
                     for i in 0..m {
                         let far = radius2[i].hi.max(radius2[ring.next(i)].hi);
                         if q2.lo <= far && q2.hi >= nearest2[i] {
-                            visit(&Pair {
+                            visit(Pair {
                                 kind: ContactKind::A,
                                 o,
                                 r,
@@ -259,27 +275,25 @@ fn pairs<R: Scalar>(
 #[allow(clippy::too_many_arguments)]
 fn type_b<R: Scalar>(
     frame: &Frame<R>,
-    pawl: &PawlShape<R>,
-    oring: &super::Ring<R>,
+    ring: &Ring<R>,
+    oring: &Ring<R>,
     o: usize,
     r: usize,
     i: usize,
     j: usize,
     edge_base: u32,
 ) -> Patch<R> {
-    let ring = &pawl.ring;
     let a = &ring.vertices[i];
     let n = &oring.normals[j];
     let (q0, q1) = (&oring.vertices[j], &oring.vertices[oring.next(j)]);
-    let tau = q1 - q0;
-    let (ahead, behind) = (
-        &ring.vertices[ring.next(i)] - a,
-        &ring.vertices[ring.prev(i)] - a,
-    );
+    let tau = oring.edge(j);
+    let (ahead, behind) = (ring.edge(i), -&ring.edge(ring.prev(i)));
     let to_hinge = &frame.p0 - q0;
     let past = q1 - &frame.p0;
     let vt = frame.v.dot(&tau);
+    let squared = certainly_zero(|| [ahead.dot(a), behind.dot(a)]);
     Patch {
+        squared,
         contact: Contact::Obstacle {
             obstacle: o as u32,
             kind: ContactKind::B,
@@ -312,29 +326,27 @@ fn type_b<R: Scalar>(
 #[allow(clippy::too_many_arguments)]
 fn type_a<R: Scalar>(
     frame: &Frame<R>,
-    pawl: &PawlShape<R>,
-    oring: &super::Ring<R>,
+    ring: &Ring<R>,
+    oring: &Ring<R>,
     o: usize,
     r: usize,
     i: usize,
     j: usize,
     edge_base: u32,
 ) -> Patch<R> {
-    let ring = &pawl.ring;
     let m = &ring.normals[i];
     let (a0, a1) = (&ring.vertices[i], &ring.vertices[ring.next(i)]);
-    let tau = a1 - a0;
+    let tau = ring.edge(i);
     let q = &oring.vertices[j];
     let w = q - &frame.p0;
     let e = m.dot(a0);
-    let (ahead, behind) = (
-        &oring.vertices[oring.next(j)] - q,
-        &oring.vertices[oring.prev(j)] - q,
-    );
+    let (ahead, behind) = (oring.edge(j), -&oring.edge(oring.prev(j)));
     // (w − v·t)·R m − e and (w − v·t)·R τ between a₀·τ and a₁·τ.
     let v = &frame.v;
     let minus_v = -v;
+    let squared = certainly_zero(|| [ahead.cross(v), behind.cross(v)]);
     Patch {
+        squared,
         contact: Contact::Obstacle {
             obstacle: o as u32,
             kind: ContactKind::A,

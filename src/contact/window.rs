@@ -11,7 +11,7 @@ use super::{Chart, Patch, Trig};
 use crate::number::{Enclosed, Interval, Scalar};
 
 /// How often a range is halved.
-const HALVINGS: u32 = 4;
+const HALVINGS: u32 = 1;
 
 type Form = [Interval; 3];
 

@@ -9,11 +9,12 @@
 //! What comes out names each edge's arc, the ends of its stretch, the sides on which the face lies, the
 //! half-edges in the order of the walk, and all arcs through each vertex, those hidden behind others too.
 
+use super::cylinder;
 use super::kernel::{CurveId, Kernel, NumId};
 use super::merge::arcs_alone;
 use super::read::{SourceArc, Upright};
-use super::run::{FaceError, graph, upright};
-use super::trace::{Carrier, OnArc, Point, Tracer};
+use super::run::{FaceError, Method, graph, upright};
+use super::trace::{Carrier, Item, OnArc, Point, Tracer};
 use crate::number::Rat;
 
 /// Two verticals that are the two sides of one stretch of a cut: the one on the left border of the strip
@@ -51,25 +52,101 @@ pub(crate) struct Boundary {
     pub(crate) cycles: Vec<u32>,
 }
 
-/// The boundary of the face that holds the start, with all that is glued to it.
+/// A strip: what bounds faces on a cylinder that is cut open.
+pub(crate) struct Strip<'a> {
+    /// The graphs of arcs, then the strip's lower border and its upper one.
+    pub(crate) graphs: &'a [SourceArc],
+    /// The uprights of arcs, then those of the cut.
+    pub(crate) uprights: &'a [Upright],
+    /// The stretches of the cut, left and right in turn.
+    pub(crate) glue: &'a [Glue],
+    /// For each upright of an arc whether it is the other side of the one before it, a level on the cut.
+    pub(crate) second: &'a [bool],
+}
+
+/// How a face is to be found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) method: Method,
+    /// How many pairs an automatic walk may test.
+    pub(crate) patience: u64,
+    /// How many arcs a leaf of the merge tree takes.
+    pub(crate) leaf: usize,
+}
+
+/// How a face was found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Found {
+    /// Walk or merge.
+    pub method: Method,
+    /// How many merges were made.
+    pub merges: u64,
+}
+
+/// The boundary of the face that holds the start, with all that is glued to it, by the way that is asked for.
 ///
-/// O(n log n) for the index, then in proportion to what the walk meets.
+/// The walk: O(n log n) for the index, then in proportion to what it meets. The merge: see `cylinder.rs`.
 pub(crate) fn boundary(
-    arcs: &[SourceArc],
-    uprights: &[Upright],
+    strip: &Strip<'_>,
     start: &(Rat, Rat),
-    glue: &[Glue],
-) -> Result<Boundary, FaceError> {
+    way: Way,
+) -> Result<(Boundary, Found), FaceError> {
     let bad = |i: usize| move |why| FaceError::BadArc(i, 0, why);
-    let mut k = Kernel::default();
-    let mut items = Vec::with_capacity(arcs.len() + uprights.len());
-    for (i, arc) in arcs.iter().enumerate() {
-        items.push(graph(&mut k, arc, i).map_err(bad(i))?);
+    let on = |OnArc(i)| FaceError::StartOnArc(i as usize, 0);
+    let read = || {
+        let mut k = Kernel::default();
+        let mut items = Vec::with_capacity(strip.graphs.len() + strip.uprights.len());
+        for (i, arc) in strip.graphs.iter().enumerate() {
+            items.push(graph(&mut k, arc, i).map_err(bad(i))?);
+        }
+        for (i, arc) in strip.uprights.iter().enumerate() {
+            let i = strip.graphs.len() + i;
+            items.push(upright(&mut k, arc, i).map_err(bad(i))?);
+        }
+        let start = Point {
+            x: k.rational(&start.0),
+            c: k.constant(&start.1),
+        };
+        Ok((k, items, start))
+    };
+    let (mut k, items, z) = read()?;
+    if way.method != Method::Merge {
+        let budget = match way.method {
+            Method::Auto => way.patience,
+            _ => u64::MAX,
+        };
+        let walked = walked(k, &items, strip, z, budget).map_err(on)?;
+        match walked {
+            Ok(b) => {
+                let method = Method::Walk;
+                return Ok((b, Found { method, merges: 0 }));
+            }
+            Err(given_up) => k = given_up,
+        }
     }
-    for (i, arc) in uprights.iter().enumerate() {
-        let i = arcs.len() + i;
-        items.push(upright(&mut k, arc, i).map_err(bad(i))?);
-    }
+    let mut merges = 0;
+    let cut = [0, 1].map(|i| items[items.len() - 2 + i].l);
+    let framed = cylinder::Strip {
+        items: &items,
+        graphs: strip.graphs.len() - 2,
+        uprights: strip.second.len(),
+        second: strip.second,
+        cut,
+    };
+    let b = cylinder::conquered(k, &framed, strip.glue, z, way.leaf, &mut merges).map_err(on)?;
+    let method = Method::Merge;
+    Ok((b, Found { method, merges }))
+}
+
+/// The boundary by walking; the kernel alone where that took more than `budget` tests.
+fn walked(
+    mut k: Kernel,
+    items: &[Item],
+    strip: &Strip<'_>,
+    start: Point,
+    budget: u64,
+) -> Result<Result<Boundary, Kernel>, OnArc> {
+    let first = strip.graphs.len();
     let curves = items
         .iter()
         .map(|i| match i.carrier {
@@ -77,29 +154,29 @@ pub(crate) fn boundary(
             Carrier::Vertical(..) => None,
         })
         .collect();
-    let start = Point {
-        x: k.rational(&start.0),
-        c: k.constant(&start.1),
-    };
-    let (mut items, comps, ends) = arcs_alone(&items);
+    let (mut items, comps, ends) = arcs_alone(items);
     let mut t = Tracer::new(&mut k, &mut items, &comps, ends.into_iter());
-    t.outline(start)
-        .map_err(|OnArc(i)| FaceError::StartOnArc(i as usize, 0))?;
-    let mut partner = vec![None; uprights.len()];
-    for &(left, right) in glue {
+    t.budget = budget;
+    t.outline(start)?;
+    let mut partner = vec![None; strip.uprights.len()];
+    for &(left, right) in strip.glue {
         // Beyond the left border the strip goes on to the left of its right border, and vice versa.
-        partner[left] = Some((arcs.len() + right, true));
-        partner[right] = Some((arcs.len() + left, false));
+        partner[left] = Some((first + right, true));
+        partner[right] = Some((first + left, false));
     }
     let mut at = 0;
-    while at < t.edges.len() {
+    while at < t.edges.len() && t.tests <= t.budget {
         let item = t.edges[at].item as usize;
-        if let Some(Some((other, up))) = item.checked_sub(arcs.len()).map(|i| partner[i]) {
+        if let Some(Some((other, up))) = item.checked_sub(first).map(|i| partner[i]) {
             t.border(other as u32, up);
         }
         at += 1;
     }
     t.islands();
+    if t.tests > t.budget {
+        drop(t);
+        return Ok(Err(k));
+    }
     let mut number = vec![u32::MAX; t.vertices.len()];
     let mut vertices = Vec::new();
     let (mut links, mut link_starts) = (Vec::new(), vec![0]);
@@ -129,7 +206,7 @@ pub(crate) fn boundary(
         sum += c.half_edges;
         cycles.push(sum);
     }
-    Ok(Boundary {
+    Ok(Ok(Boundary {
         kernel: k,
         vertices,
         links,
@@ -138,5 +215,5 @@ pub(crate) fn boundary(
         curves,
         order,
         cycles,
-    })
+    }))
 }

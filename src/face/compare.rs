@@ -5,13 +5,90 @@
 //! where the curves are small, with error bounds in doubles otherwise, and exactly in any case.
 
 use super::approx::{Approx, horner};
-use super::isolate::{Roots, isolate, one_sign};
+use super::isolate::{Roots, bernstein, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
-use crate::number::Poly;
+use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
+/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
+#[derive(Clone, Copy)]
+pub(super) struct Core {
+    pub(super) middle: f64,
+    pub(super) half: f64,
+}
+
+/// The difference of two curves as a quotient of polynomials of degree n.
+pub(super) struct Gap {
+    above: [Approx; 5],
+    below: [Approx; 5],
+    n: usize,
+}
+
+impl Gap {
+    /// An enclosure over [a, b]; None where the denominator may vanish.
+    pub(super) fn range(&self, a: f64, b: f64) -> Option<(f64, f64)> {
+        let (p, q) = (
+            bernstein(&self.above[..=self.n], a, b),
+            bernstein(&self.below[..=self.n], a, b),
+        );
+        let sign = q[0].sign().filter(|&s| s != 0)?;
+        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (p, q) in p.iter().zip(&q).take(self.n + 1) {
+            if q.sign() != Some(sign) {
+                return None;
+            }
+            let t = p.over(*q);
+            if !(t.v.is_finite() && t.e.is_finite()) {
+                return None;
+            }
+            (lo, hi) = (lo.min(t.lo()), hi.max(t.hi()));
+        }
+        Some((lo, hi))
+    }
+
+    /// Whether it is surely above `high` all over [a, b], or below `low`.
+    pub(super) fn outside(&self, low: f64, high: f64, a: f64, b: f64) -> bool {
+        let m = a + (b - a) * 0.5;
+        let value = |f: &[Approx; 5]| f[..=self.n].iter().rev().fold(0.0, |s, c| s * m + c.v);
+        let (above, below) = (value(&self.above), value(&self.below));
+        let bound = match above / below {
+            v if v > high => high,
+            v if v < low => low,
+            _ => return false,
+        };
+        let bound = Approx::exact(bound);
+        let mut rest = [Approx::default(); 5];
+        for (r, (p, q)) in rest.iter_mut().zip(self.above.iter().zip(&self.below)) {
+            *r = *p - bound * *q;
+        }
+        // The signs are those in the middle.
+        one_sign(&rest[..=self.n], a, b) && one_sign(&self.below[..=self.n], a, b)
+    }
+}
+
 impl Kernel {
+    /// The difference c − d.
+    #[inline]
+    pub(super) fn gap(&self, c: CurveId, d: CurveId) -> Gap {
+        let above = self.diff(c, d);
+        let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
+        let mut below = [Approx::default(); 5];
+        if self.proportional(c, d) {
+            let lead = b.q[(0..3).rev().find(|&i| b.q[i].v != 0.0).unwrap_or(0)];
+            for (o, q) in below.iter_mut().zip(&a.q) {
+                *o = *q * lead;
+            }
+            return Gap { above, below, n: 2 };
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                below[i + j] = below[i + j] + a.q[i] * b.q[j];
+            }
+        }
+        Gap { above, below, n: 4 }
+    }
+
     /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
     /// quadratic; else it is P₁Q₂ − P₂Q₁.
     #[inline]
@@ -177,7 +254,8 @@ impl Kernel {
         }
     }
 
-    fn slope(&self, c: CurveId, x: NumId) -> Approx {
+    /// The slope of a curve over a number.
+    pub(super) fn slope(&self, c: CurveId, x: NumId) -> Approx {
         let (curve, u) = (&self.curves[c as usize], self.approx(x));
         let (p, q) = (horner(&curve.p, u), horner(&curve.q, u));
         let (dp, dq) = (derivative(&curve.p, u), derivative(&curve.q, u));
@@ -196,34 +274,94 @@ impl Kernel {
         }
     }
 
-    /// Whether the two surely meet nowhere over [lo, hi] but at x, where they do.
-    pub(crate) fn miss_beside(&self, c: CurveId, d: CurveId, lo: f64, hi: f64, x: NumId) -> bool {
-        let (c, d) = (c.min(d), c.max(d));
-        let mut g = self.diff(c, d);
+    /// Whether the two surely meet nowhere over [lo, hi] but at the points over `known`, where h vanishes at least
+    /// as often as said.
+    pub(crate) fn miss_beside(
+        &self,
+        c: CurveId,
+        d: CurveId,
+        lo: f64,
+        hi: f64,
+        known: &[(NumId, usize)],
+    ) -> bool {
+        let mut g = self.diff(c.min(d), c.max(d));
         let Some(mut n) = (0..5).rev().find(|&k| g[k].sign() != Some(0)) else {
             return false;
         };
-        let u = self.approx(x);
-        let mut rest = None;
-        while n > 0 {
-            deflate(&mut g, &mut n, u);
-            if one_sign(&g[..=n], lo, hi) {
-                return true;
+        for &(x, order) in known {
+            for _ in 0..order.min(n) {
+                deflate(&mut g, &mut n, self.approx(x));
             }
-            // Perhaps a root of higher order.
-            let (Some(m), Some(h)) = (self.equation(x), rest.or_else(|| self.diff_small(c, d)))
-            else {
-                return false;
-            };
-            let Some(h) = derivative_of(&h) else {
-                return false;
-            };
-            if vanishes(&h, &m) != Some(true) {
-                return false;
-            }
-            rest = Some(h);
         }
-        false
+        one_sign(&g[..=n], lo, hi)
+    }
+
+    /// How often h vanishes at its root x, as far as doubles and machine words tell: at least once, and
+    /// never said to be more than it is. For equal curves more than any other.
+    pub(super) fn contact(&self, c: CurveId, d: CurveId, x: NumId) -> usize {
+        if c == d {
+            return 5;
+        }
+        if matches!((self.slope(c, x) - self.slope(d, x)).sign(), Some(-1 | 1)) {
+            return 1;
+        }
+        let (Some(m), Some(mut h)) = (self.equation(x), self.diff_small(c, d)) else {
+            return 1;
+        };
+        let mut order = 1;
+        while order < 4 {
+            match derivative_of(&h) {
+                Some(next) if next != [0; 5] && vanishes(&next, &m) == Some(true) => h = next,
+                _ => break,
+            }
+            order += 1;
+        }
+        order
+    }
+
+    /// P₁Q₂ − P₂Q₁, whatever the denominators.
+    pub(super) fn full_difference(&self, c: CurveId, d: CurveId) -> [Approx; 5] {
+        let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
+        if let (Coeffs::Small(x), Coeffs::Small(y)) = (&a.exact, &b.exact) {
+            return difference::<i128>(x, y, false).map(Approx::from_int);
+        }
+        let mut h = [Approx::default(); 5];
+        for i in 0..3 {
+            for j in 0..3 {
+                h[i + j] = h[i + j] + (a.p[i] * b.q[j] - b.p[i] * a.q[j]);
+            }
+        }
+        h
+    }
+
+    /// (c − d)·Q_d over the product of u − x for the roots x of h, each as often as said: a polynomial over the
+    /// denominator of c. With a core also divided by u − x in the middle of it, as if that were a root: what
+    /// remains is part of the errors, wherever u is not in the core.
+    pub(super) fn blown_up(
+        &self,
+        c: CurveId,
+        d: CurveId,
+        at: &[(NumId, usize)],
+        core: Option<Core>,
+    ) -> ([Approx; 5], [Approx; 5]) {
+        let a = &self.curves[c as usize];
+        let mut below = [Approx::default(); 5];
+        below[..3].copy_from_slice(&a.q);
+        if c == d {
+            return ([Approx::default(); 5], below);
+        }
+        let mut top = self.full_difference(c, d);
+        let mut n = 4;
+        for &(x, order) in at {
+            for _ in 0..order {
+                deflate(&mut top, &mut n, self.approx(x));
+            }
+        }
+        if let Some(core) = core {
+            let rest = deflate(&mut top, &mut n, Approx::exact(core.middle));
+            top[0].e += (rest.v.abs() + rest.e) / core.half * (1.0 + 1e-9);
+        }
+        (top, below)
     }
 
     /// Every root of h in [lo, hi] goes to `out`, those equal to a `known` root perhaps not, and perhaps
@@ -277,7 +415,31 @@ impl Kernel {
             return;
         }
         out.truncate(from);
+        if let Some(x) = self.touch(c, d) {
+            out.push(x);
+            return;
+        }
         self.all_crossings(c, d, out);
+    }
+
+    /// The only root of h, if that is a square by its discriminant: named by its equation, so that all curves that
+    /// touch there share the name.
+    fn touch(&mut self, c: CurveId, d: CurveId) -> Option<NumId> {
+        let [h0, h1, h2, 0, 0] = self.diff_small(c, d)? else {
+            return None;
+        };
+        let square = h1.checked_mul(h1)? == h2.checked_mul(h0)?.checked_mul(4)?;
+        if h2 == 0 || !square {
+            return None;
+        }
+        let m = [Int::from(h1), Int::from(h2.checked_mul(2)?), Int::zero()];
+        let x = self.root(&m, 0).ok()?;
+        let pair = self.pairs.entry((c, d)).or_default();
+        pair.complete = true;
+        if !pair.ids.contains(&x) {
+            pair.ids.push(x);
+        }
+        Some(x)
     }
 
     /// The name of the only root of h in an enclosure; None where it may be confused with another.
@@ -307,6 +469,21 @@ impl Kernel {
         Some(id)
     }
 
+    /// The double roots of h, if it has any and none of a higher order, and what is left of h without them. They
+    /// are roots of a polynomial of low degree, h's with its derivative, and so are named by it: all curves
+    /// that touch at one place share the name.
+    fn multiple_roots(&mut self, h: &Poly) -> Option<(Poly, Vec<NumId>)> {
+        let g = h.gcd(&h.derivative()).primitive();
+        let n = g.degree().filter(|n| (1..=2).contains(n))?;
+        let rest = h.div_exact(&g)?.div_exact(&g)?;
+        let m = [0, 1, 2].map(|i| g.coeff(i));
+        let mut ids = Vec::new();
+        for k in 0..n as u8 {
+            ids.extend(self.root(&m, k).ok());
+        }
+        Some((rest, ids))
+    }
+
     /// All real roots of h, exactly.
     #[cold]
     fn all_crossings(&mut self, c: CurveId, d: CurveId, out: &mut Vec<NumId>) {
@@ -315,7 +492,13 @@ impl Kernel {
             pair.complete = true;
             let before = pair.ids.clone();
             self.stats.pairs_exact += 1;
-            for r in self.diff_poly(c, d).real_roots() {
+            let mut h = self.diff_poly(c, d);
+            if let Some((rest, multiple)) = self.multiple_roots(&h) {
+                h = rest;
+                let ids = &mut self.pairs.entry((c, d)).or_default().ids;
+                ids.extend(multiple);
+            }
+            for r in h.real_roots() {
                 let i = r.interval();
                 let mut same = None;
                 for &id in &before {
@@ -358,9 +541,9 @@ where
     h
 }
 
-/// Divides by u − x, a factor; the degree n falls by one.
+/// Divides by u − x; the degree n falls by one. Returns what remains, which is zero for a factor.
 #[inline]
-fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
+fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) -> Approx {
     let mut carry = g[*n];
     for k in (0..*n).rev() {
         let below = g[k] + x * carry;
@@ -369,6 +552,7 @@ fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
     }
     g[*n] = Approx::default();
     *n -= 1;
+    carry
 }
 
 fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {

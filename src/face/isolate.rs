@@ -64,7 +64,7 @@ pub(super) fn one_sign(g: &[Approx], a: f64, b: f64) -> bool {
 
 /// The coefficients on [a, b].
 #[inline]
-fn bernstein(g: &[Approx], a: f64, b: f64) -> [Approx; 5] {
+pub(super) fn bernstein(g: &[Approx], a: f64, b: f64) -> [Approx; 5] {
     let n = g.len() - 1;
     // One over the binomial coefficients.
     const THIRD: f64 = 1.0 / 3.0;

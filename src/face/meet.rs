@@ -29,7 +29,7 @@ impl Tracer<'_> {
         let (i, j) = (self.items[a as usize], self.items[b as usize]);
         match (i.carrier, j.carrier) {
             (Carrier::Graph(c), Carrier::Graph(d)) if c == d => self.overlap(&i, &j, c),
-            (Carrier::Graph(c), Carrier::Graph(d)) => self.cross(&i, &j, c, d),
+            (Carrier::Graph(c), Carrier::Graph(d)) => self.cross((a, b), (&i, &j), c, d),
             (Carrier::Graph(c), Carrier::Vertical(..)) => self.pierce(&i, c, &j, false),
             (Carrier::Vertical(..), Carrier::Graph(d)) => self.pierce(&j, d, &i, true),
             (Carrier::Vertical(..), Carrier::Vertical(..)) => self.stack(&i, &j),
@@ -63,7 +63,7 @@ impl Tracer<'_> {
     }
 
     /// Two graphs of different curves.
-    fn cross(&mut self, i: &Item, j: &Item, c: CurveId, d: CurveId) {
+    fn cross(&mut self, (a, b): (u32, u32), (i, j): (&Item, &Item), c: CurveId, d: CurveId) {
         let k = &*self.k;
         let lo = k.enclosure(i.l).0.max(k.enclosure(j.l).0);
         let hi = k.enclosure(i.r).1.min(k.enclosure(j.r).1);
@@ -88,6 +88,22 @@ impl Tracer<'_> {
         }
         if apart {
             return;
+        }
+        // So are the vertices of many arcs that both pass through; each of the two stops there anyway.
+        if let (Some(mine), Some(theirs)) = (self.busy.get(&a), self.busy.get(&b)) {
+            let mut shared = mine.clone();
+            shared.retain(|v| theirs.contains(v));
+            for v in shared {
+                let x = self.vertices[v as usize].at.x;
+                let ends = [i.vl, i.vr, j.vl, j.vr].map(|e| self.find(e) == v);
+                let pushed = (ends[0] || ends[1]) && (ends[2] || ends[3]);
+                for _ in usize::from(pushed)..self.k.contact(c, d, x) {
+                    if n < known.len() {
+                        known[n] = x;
+                        n += 1;
+                    }
+                }
+            }
         }
         let mut found = std::mem::take(&mut self.numbers);
         found.clear();

@@ -15,8 +15,11 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod approx;
+mod bands;
 mod boundary;
 mod compare;
+mod cylinder;
+mod frames;
 mod hash;
 mod island;
 mod isolate;
@@ -25,13 +28,17 @@ mod kernel;
 mod meet;
 mod merge;
 mod numbers;
+mod pencil;
 mod read;
+mod region;
 mod run;
 mod stops;
 mod trace;
 
-pub(crate) use boundary::{Boundary, Glue, boundary};
+pub use boundary::Found;
+pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};
 pub use kernel::Stats;
 pub(crate) use kernel::{Kernel as FaceKernel, NumId};
 pub use read::{ArcFile, ReadError, RootOf, SourceArc, Upright};
+pub use region::Region;
 pub use run::{Answer, Args, FaceError, Method, Question, Report, face, run_cli};

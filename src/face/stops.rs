@@ -7,8 +7,10 @@
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
+use super::bands::Bands;
 use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
+use super::pencil::Pencil;
 use super::trace::Tracer;
 use crate::geometry::index::Hull;
 use std::cmp::Ordering;
@@ -80,7 +82,7 @@ impl Window {
 /// How many others a window at this depth may have before it is halved.
 fn crowd(depth: usize) -> usize {
     if depth < DEEPEST {
-        8 + depth * depth / 8
+        16 + depth * depth / 8
     } else {
         usize::MAX
     }
@@ -88,6 +90,11 @@ fn crowd(depth: usize) -> usize {
 
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
+
+/// How many items a search may find in vain, on average, before bands are made; and how many in all before that
+/// is asked.
+const VAIN: u64 = 16;
+const PATIENT: u64 = 4096;
 
 /// A window whose stops are known, and those as a range of `stops`.
 #[derive(Clone, Copy)]
@@ -247,6 +254,18 @@ impl Tracer<'_> {
         let mut near = std::mem::take(&mut self.near);
         if self.gather(item, &hull, most, &mut near) {
             self.stop(item, w, &near);
+            // As many different points in so small a window: not one point that many pass through.
+            let Window {
+                stops, stop_count, ..
+            } = self.windows[w as usize];
+            if depth >= DEEPEST
+                && stop_count as usize > crowd(DEEPEST - 1)
+                && self.pencil(item).is_none()
+            {
+                let middle = self.stops[(stops + stop_count / 2) as usize];
+                let middle = self.vertices[middle as usize].at.x;
+                self.gather_cluster(item, self.k.enclosure(middle).0, to - from, &near);
+            }
         } else {
             let kids = self.windows.len() as u32;
             self.windows.push(Window::new(from, mid));
@@ -266,23 +285,25 @@ impl Tracer<'_> {
     /// The items that may meet this one inside a hull; false as soon as there are more than `most`.
     fn gather(&mut self, item: u32, hull: &Hull, most: usize, near: &mut Vec<u32>) -> bool {
         near.clear();
+        let range = (hull.bounds[0], hull.bounds[1]);
+        let mut pencil = self.pencil(item);
+        if let Some(crowd) = pencil.and_then(|p| p.1.crowd_in(range.0, range.1)) {
+            if crowd > most {
+                return false;
+            }
+            pencil = None;
+        }
+        let pencil_id = pencil.map_or(NONE, |p| p.0);
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
-        let (items, k, stamp) = (self.items, &*self.k, &mut self.stamp);
+        let mut stamp = std::mem::take(&mut self.stamp);
+        let (items, k) = (self.items, &*self.k);
         let me = &items[item as usize];
-        let through = &mut self.through;
         let busy = self.busy.get(&item);
-        for &v in busy.into_iter().flatten() {
-            let mut at = self.vertices[v as usize].links;
-            while at != NONE {
-                let link = &self.links[at as usize];
-                through[link.item as usize] = (serial, v);
-                at = link.next;
-            }
-        }
-        let (mut few, mut tests) = (true, 0);
-        self.tree.query(hull, |b| {
+        let (mut few, mut tests, mut wasted) = (true, 0, 0);
+        let own = self.pencil_of[item as usize];
+        let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
             }
@@ -298,37 +319,79 @@ impl Tracer<'_> {
             {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
-                if lo > hi || k.miss(c, d, lo, hi) {
-                    return true;
-                }
-                if busy.is_some()
-                    && let (when, v) = through[b as usize]
-                    && when == serial
-                    && k.miss_beside(c, d, lo, hi, self.vertices[v as usize].at.x)
-                {
+                let vain = lo > hi
+                    || if own != NONE && self.pencil_of[b as usize] == own {
+                        k.miss_beside(c, d, lo, hi, self.pencils[own as usize].known())
+                    } else {
+                        k.miss(c, d, lo, hi)
+                            || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                    };
+                if vain {
+                    wasted += 1;
                     return true;
                 }
             }
             near.push(b);
             few = near.len() <= most;
             few
-        });
+        };
+        let pencil = (pencil_id != NONE).then(|| &self.pencils[pencil_id as usize]);
+        if let (Some(pencil), Carrier::Graph(c)) = (pencil, me.carrier) {
+            pencil.query(k, c, range, &mut consider);
+        }
+        if let Some(Pencil {
+            rest: Some(rest), ..
+        }) = pencil
+        {
+            rest.query(hull, &mut consider);
+        } else {
+            let (bands, entries) = (&self.bands, self.tree.entries());
+            let wanted = |at: usize, node: &Hull| {
+                !node.apart(hull)
+                    && match me.carrier {
+                        Carrier::Graph(c) if at >= entries && !bands.is_empty() => {
+                            let from = node.bounds[0].max(hull.bounds[0]);
+                            let to = node.bounds[1].min(hull.bounds[1]);
+                            !bands.apart(k, at, c, from, to)
+                        }
+                        _ => true,
+                    }
+            };
+            self.tree.descend(wanted, |b| {
+                pencil_id != NONE && self.pencil_of[b as usize] == pencil_id || consider(b)
+            });
+        }
+        self.stamp = stamp;
         self.tests += tests;
+        self.wasted += wasted;
+        if self.bands.is_empty() && self.wasted > VAIN * u64::from(serial) + PATIENT {
+            self.bands = Bands::new(self.k, self.items, &self.tree);
+        }
         few
     }
 
-    /// Keeps in mind that many items pass through a vertex that knows all its arcs: pairs of them need not be
-    /// asked again what they do there.
-    pub(super) fn remember(&mut self, v: u32) {
-        let x = self.vertices[v as usize].at.x;
-        self.k.exact(x);
-        self.through.resize(self.items.len(), (0, NONE));
-        let mut at = self.vertices[v as usize].links;
-        while at != NONE {
-            let link = self.links[at as usize];
-            self.busy.entry(link.item).or_default().push(v);
-            at = link.next;
-        }
+    /// Whether an item through the vertices `mine` surely meets another over [lo, hi] only in those that both
+    /// pass through.
+    fn only_there(
+        &self,
+        mine: &[u32],
+        other: u32,
+        (c, d): (CurveId, CurveId),
+        lo: f64,
+        hi: f64,
+    ) -> bool {
+        let Some(theirs) = self.busy.get(&other) else {
+            return false;
+        };
+        let known: Vec<(NumId, usize)> = mine
+            .iter()
+            .filter(|v| theirs.contains(v))
+            .map(|&v| {
+                let x = self.vertices[v as usize].at.x;
+                (x, self.k.contact(c, d, x))
+            })
+            .collect();
+        !known.is_empty() && self.k.miss_beside(c, d, lo, hi, &known)
     }
 
     /// The remembered vertices inside an item, as hits on a window.

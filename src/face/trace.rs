@@ -10,11 +10,13 @@
 //! only pairs of different colours are tested.
 
 use super::approx::Approx;
+use super::bands::Bands;
 use super::hash::FastMap;
 use super::item::Place;
 pub(crate) use super::item::{Carrier, Comp, Item, NONE, Point};
 use super::kernel::{CurveId, Kernel, NumId};
 use super::meet::Cross;
+use super::pencil::Pencil;
 use super::stops::{Hit, Link, Vertex, Window};
 use crate::geometry::index::{Bounds, Hull, Tree};
 use std::cmp::Ordering;
@@ -38,7 +40,7 @@ impl Dir {
         }
     }
     /// Whether the walk goes from the low to the high end.
-    fn forward(self) -> bool {
+    pub(super) fn forward(self) -> bool {
         matches!(self, Dir::Right | Dir::Up)
     }
 }
@@ -64,7 +66,7 @@ pub(crate) struct Edge {
     pub(crate) below: bool,
     pub(crate) cycle: u32,
     /// Its germs at the low and the high end.
-    germs: [u32; 2],
+    pub(super) germs: [u32; 2],
 }
 
 /// A boundary cycle of the face.
@@ -94,7 +96,7 @@ struct Ray {
 pub(crate) struct Tracer<'a> {
     pub(super) k: &'a mut Kernel,
     pub(super) items: &'a [Item],
-    comps: &'a [Comp],
+    pub(super) comps: &'a [Comp],
     pub(super) tree: Tree,
     pub(super) windows: Vec<Window>,
     pub(super) vertices: Vec<Vertex>,
@@ -112,11 +114,16 @@ pub(crate) struct Tracer<'a> {
     pub(super) mark_serial: u32,
     /// The vertices of many arcs that an item passes through.
     pub(super) busy: FastMap<u32, Vec<u32>>,
+    /// Those that pass through one such vertex, blown up there, and to which of them an item belongs.
+    pub(super) pencils: Vec<Pencil>,
+    pub(super) pencil_of: Vec<u32>,
     /// Pairs tested for a meeting, and how many may be before the walk is given up.
     pub(super) tests: u64,
     pub(super) budget: u64,
+    /// Those of them that searches found in vain, and the bands that were made when they were too many.
+    pub(super) wasted: u64,
+    pub(super) bands: Bands,
     /// Buffers.
-    pub(super) through: Vec<(u32, u32)>,
     pub(super) hits: Vec<Hit>,
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
@@ -160,9 +167,12 @@ impl<'a> Tracer<'a> {
             mark: vec![0; items.len()],
             mark_serial: 0,
             busy: FastMap::default(),
+            pencils: Vec::new(),
+            pencil_of: vec![NONE; items.len()],
             tests: 0,
             budget: u64::MAX,
-            through: Vec::new(),
+            wasted: 0,
+            bands: Bands::default(),
             hits: Vec::new(),
             near: Vec::new(),
             numbers: Vec::new(),
@@ -222,8 +232,18 @@ impl<'a> Tracer<'a> {
         for (germs, right) in [(&mut rights, true), (&mut lefts, false)] {
             if germs.len() > 1 {
                 // Overlapping arcs are one germ, told by its first item.
-                germs.sort_by(|a, b| k.cmp_beside(a.0, b.0, x, right).then(a.1.cmp(&b.1)));
-                germs.dedup_by_key(|g| g.0);
+                let mut steep: Vec<(Approx, CurveId, u32)> =
+                    germs.iter().map(|&(c, i)| (k.slope(c, x), c, i)).collect();
+                steep.sort_by(|a, b| {
+                    let o = match (a.0 - b.0).sign() {
+                        Some(s) if s != 0 && a.1 != b.1 => s.cmp(&0),
+                        _ => return k.cmp_beside(a.1, b.1, x, right).then(a.2.cmp(&b.2)),
+                    };
+                    if right { o } else { o.reverse() }
+                });
+                steep.dedup_by_key(|g| g.1);
+                germs.clear();
+                germs.extend(steep.iter().map(|g| (g.1, g.2)));
             }
         }
         let from = self.germs.len();
@@ -477,7 +497,7 @@ impl<'a> Tracer<'a> {
         let (mut through, mut beside) = (None, None);
         {
             tree.descend(
-                |n| {
+                |_, n| {
                     n.bounds[0] <= b && a <= n.bounds[1] && {
                         let (lo, hi) = n.t_over(a, b);
                         lo <= ceiling && hi >= floor.get()

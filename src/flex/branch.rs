@@ -50,14 +50,14 @@ pub(crate) fn solve(
     }
     let choices: Vec<[Row; 4]> = facing
         .iter()
-        .map(|f| scaffold.choices(f).map(|p| scaffold.row(&p, placed)))
+        .map(|f| scaffold.choices(f).map(|p| run.row(&p, placed)))
         .collect();
     let all = |taken: &[Option<u8>]| -> Vec<Row> {
         let chosen = taken.iter().zip(&choices);
         let more = chosen.filter_map(|(t, four)| t.map(|t| four[t as usize].clone()));
         rows.iter().cloned().chain(more).collect()
     };
-    let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses);
+    let program = |taken: &[Option<u8>]| scaffold.program(&all(taken), poses, &run.stations.poses);
     let solved = |taken: &[Option<u8>]| run.program(&all(taken), poses);
     let mut programs = 1;
     let root = vec![None; facing.len()];

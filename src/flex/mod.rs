@@ -12,6 +12,8 @@
 //! | `shape` | where does a body stand, in integers? |
 //! | `pairs` | which point is to stay on its side of which line? |
 //! | `model` | what are the distances, gradients and objective there? |
+//! | `station`, `grain` | where are gradients taken, and how are poses rounded? |
+//! | `bend` | along which curve is a direction followed? |
 //! | `step` | how far may a step go, and where does it end? |
 //! | `generate` | the paper's families of structures |
 //!
@@ -19,9 +21,11 @@
 //! Whether a configuration respects its constraints is decided by exact integers.
 
 pub mod apps;
+mod bend;
 mod bound;
 mod branch;
 pub mod generate;
+mod grain;
 mod model;
 mod motion;
 mod mps;
@@ -32,6 +36,7 @@ pub mod report;
 mod safe;
 mod schema;
 mod shape;
+mod station;
 mod step;
 mod types;
 mod write;
@@ -40,7 +45,7 @@ pub use bound::{OuterBound, outer_bound};
 pub use motion::{Contact as FirstContact, ProofSize};
 pub use mps::to_mps;
 pub use pairs::{Facing, Pair, Plane, Point};
-pub use read::{MAX_STEPS, StructureFile, is_structure, read_structure};
+pub use read::{Guise, MAX_STEPS, StructureFile, guise, is_structure, read_structure};
 pub use schema::structure_schema;
 pub use shape::Pose;
 pub use step::{Corners, Ending, FlexOptions, FlexProgress, Flexed, Step, Violation, flex};

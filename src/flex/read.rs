@@ -90,23 +90,41 @@ impl StructureFile {
     }
 }
 
-/// Whether a text looks like a structure rather than a scene: by its top-level keys.
-pub fn is_structure(name: &str, bytes: &[u8]) -> bool {
-    let Ok(text) = std::str::from_utf8(bytes) else {
-        return false;
-    };
+/// What a file looks like by its top-level keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guise {
+    /// A scene of obstacles and pawls.
+    Scene,
+    /// A structure of loosely joined bodies.
+    Structure,
+    /// A result that this program wrote.
+    Result,
+}
+
+/// What a text looks like; None where it is none of them or cannot be read.
+///
+/// Cost: reads the text once.
+pub fn guise(name: &str, bytes: &[u8]) -> Option<Guise> {
+    let text = std::str::from_utf8(bytes).ok()?;
     if bytes.len() > MAX_FILE_BYTES {
-        return false;
+        return None;
     }
     let mut sources = Sources::new();
     let index = sources.add(Source::new(name, text));
-    match read_tree(&sources, index, Notation::of(name, text)) {
-        Ok(tree) => {
-            tree.get("scene").is_none()
-                && (tree.get("structure").is_some() || tree.get("body").is_some())
-        }
-        Err(_) => false,
+    let tree = read_tree(&sources, index, Notation::of(name, text)).ok()?;
+    let has = |keys: &[&str]| keys.iter().any(|k| tree.get(k).is_some());
+    if has(&["schema"]) {
+        Some(Guise::Result)
+    } else if has(&["scene", "pawl", "obstacle"]) {
+        Some(Guise::Scene)
+    } else {
+        has(&["structure", "body"]).then_some(Guise::Structure)
     }
+}
+
+/// Whether a text looks like a structure rather than a scene: by its top-level keys.
+pub fn is_structure(name: &str, bytes: &[u8]) -> bool {
+    guise(name, bytes) == Some(Guise::Structure)
 }
 
 /// Reads a structure from bytes. `name` is for messages, and its ending tells JSON from TOML;

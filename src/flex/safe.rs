@@ -5,19 +5,23 @@
 //! short at the end, and solves again with just that much held back (a second-order correction).
 //! If a row holds back κ at the full step, then at a part s of it the first order leaves at least
 //! sκ ≥ s²κ, so the way there is safe as well, up to third order; what is left is for the proof
-//! (`motion`) to say. Where a proof fails the two bodies that meet get constraints of their own,
-//! or the step is shortened.
+//! (`motion`) to say. Where a constraint still falls short by a little, by κ′ where κ is held, the
+//! part κ/κ′ of the step is safe by the same reckoning, and costs no program. Where a proof fails
+//! the two bodies that meet get constraints of their own, or the step is shortened.
 
 use super::branch::{self, Solved};
 use super::model::Row;
-use super::motion::{Motion, ProofSize};
+use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::Pair;
 use super::shape::{Placed, Pose, double};
 use super::step::Run;
 use crate::number::{Int, Rat};
+use std::collections::HashMap;
 
-/// Corrections of one step.
-const CORRECTIONS: usize = 6;
+/// The parts of a step that are good enough, correction by correction.
+const ENOUGH: [f64; 6] = [0.95, 0.8, 0.7, 0.6, 0.5, 0.4];
+/// What is held back beyond what was found lacking: another direction lacks a little more.
+const SPARE: f64 = 1.0 / 32.0;
 /// Halvings of a step that corrections do not save.
 const HALVINGS: usize = 10;
 
@@ -31,35 +35,44 @@ pub(crate) struct SafeStep {
     pub(crate) proof: Option<ProofSize>,
     /// Programs solved in all.
     pub(crate) programs: usize,
+    /// What the first of them promised, before more was held back than rounding takes.
+    pub(crate) promise: f64,
+}
+
+/// What became of a part of a direction.
+enum Tried {
+    Proven(Vec<Pose>, ProofSize),
+    /// A constraint is violated at its end.
+    Short,
+    /// Bodies meet on the way.
+    Met(Vec<Contact>),
 }
 
 impl Run<'_> {
     /// One safe step from a configuration without violations. Bodies that turn out to meet
-    /// without being joined are added to `extra`, to be kept apart from now on. `promise`: about
-    /// what the step may gain.
-    pub(crate) fn safe_step(
-        &mut self,
-        poses: &[Pose],
-        placed: &[Placed],
-        moved: bool,
-        promise: f64,
-    ) -> SafeStep {
+    /// without being joined are added to `extra`, to be kept apart from now on.
+    pub(crate) fn safe_step(&mut self, poses: &[Pose], placed: &[Placed], moved: bool) -> SafeStep {
         let mut selection = self.selection(placed, moved);
         let (mut pairs, mut rows) = self.rows(&selection, placed);
+        let grain = self.grain();
+        let pad = 4.0 * grain.distance();
+        let start = vec![[0.0; 3]; poses.len()];
         // What rounding takes is held back from the first, but no more than half of what there is,
         // so that standing still stays allowed.
-        let first = 4.0 * self.grain(promise).distance();
-        let start = vec![[0.0; 3]; poses.len()];
-        let keep = |row: &Row| first.min(linear(row, &start) / 2.0).max(0.0);
+        let keep = |row: &Row| pad.min(linear(row, &start) / 2.0).max(0.0);
         let mut held: Vec<f64> = rows.iter().map(keep).collect();
         let mut programs = 0;
-        let mut last: Option<(Solved, Vec<Row>)> = None;
-        for attempt in 0..CORRECTIONS {
+        let mut promise = 0.0;
+        let mut last: Option<Solved> = None;
+        for enough in ENOUGH {
             let tight: Vec<Row> = rows.iter().zip(&held).map(|(r, h)| hold(r, *h)).collect();
             let solved = branch::solve(self, &tight, &selection, placed, poses);
             programs += solved.programs;
+            if last.is_none() {
+                promise = double(&solved.objective);
+            }
             let Some(direction) = solved.direction.clone() else {
-                if attempt == 0 || last.is_none() {
+                if last.is_none() {
                     return SafeStep {
                         solved,
                         rows,
@@ -67,38 +80,41 @@ impl Run<'_> {
                         next: None,
                         proof: None,
                         programs,
+                        promise,
                     };
                 }
                 // Too much was held back: shorten the step that is known.
                 break;
             };
-            let grain = self.grain(double(&solved.objective));
-            let trial = self.moved(poses, &direction, 1.0, grain);
+            // By how much each row falls short of its promise, and how much of the step the rows
+            // that break theirs leave.
+            let trial = grain.moved(poses, &self.scaffold.forms, &direction, 1.0);
             let there = self.scaffold.place(&trial);
-            let pad = 4.0 * grain.distance();
-            let mut short = false;
+            let mut part = 1.0f64;
             for ((row, pair), held) in rows.iter().zip(&pairs).zip(&mut held) {
                 let (d, error) = self.scaffold.near(pair, &there);
-                if d - error < 0.0 {
-                    short = true;
-                }
                 let promised = linear(row, &direction);
-                let lack = (promised - d).max(0.0) + pad;
-                *held = held.max(lack);
+                let lack = (promised - d + error).max(0.0) + pad;
+                if d - error < 0.0 {
+                    part = part.min((promised / lack).max(0.0) * (1.0 - 1e-3));
+                }
+                *held = held.max(lack * (1.0 + SPARE));
             }
-            if !short {
-                match Motion::new(&self.scaffold, poses, &trial).prove() {
-                    Ok(proof) => {
+            if part >= enough {
+                match self.attempt(poses, &pairs, &direction, part) {
+                    Tried::Proven(next, proof) => {
                         return SafeStep {
                             solved,
                             rows,
-                            scale: Rat::one(),
-                            next: Some(trial),
+                            scale: Rat::from_f64(part),
+                            next: Some(next),
                             proof: Some(proof),
                             programs,
+                            promise,
                         };
                     }
-                    Err(contacts) => {
+                    Tried::Short => {}
+                    Tried::Met(contacts) => {
                         let known = self.scaffold.extra.len();
                         for c in &contacts {
                             let (a, b) = (c.edge.0, c.vertex.0);
@@ -108,42 +124,38 @@ impl Run<'_> {
                             }
                         }
                         if self.scaffold.extra.len() > known {
-                            let kept: std::collections::HashMap<Pair, f64> =
+                            let kept: HashMap<Pair, f64> =
                                 pairs.iter().copied().zip(held.iter().copied()).collect();
                             selection = self.selection(placed, moved);
                             (pairs, rows) = self.rows(&selection, placed);
                             held = pairs
                                 .iter()
-                                .map(|p| kept.get(p).copied().unwrap_or(pad))
+                                .zip(&rows)
+                                .map(|(p, r)| kept.get(p).copied().unwrap_or_else(|| keep(r)))
                                 .collect();
                         }
                     }
                 }
             }
-            last = Some((solved, rows.clone()));
+            last = Some(solved);
         }
-        let (solved, rows) = match last {
+        let solved = match last {
             Some(known) => known,
-            None => (branch::solve(self, &rows, &selection, placed, poses), rows),
+            None => branch::solve(self, &rows, &selection, placed, poses),
         };
         let direction = solved.direction.clone().unwrap_or_default();
-        let mut scale = 1.0;
+        let mut part = 1.0;
         for _ in 0..HALVINGS {
-            scale /= 2.0;
-            let grain = self.grain(double(&solved.objective) * scale);
-            let trial = self.moved(poses, &direction, scale, grain);
-            let there = self.scaffold.place(&trial);
-            if self.exceeds(&pairs, &there, &Rat::zero()) {
-                continue;
-            }
-            if let Ok(proof) = Motion::new(&self.scaffold, poses, &trial).prove() {
+            part /= 2.0;
+            if let Tried::Proven(next, proof) = self.attempt(poses, &pairs, &direction, part) {
                 return SafeStep {
                     solved,
                     rows,
-                    scale: Rat::from_f64(scale),
-                    next: Some(trial),
+                    scale: Rat::from_f64(part),
+                    next: Some(next),
                     proof: Some(proof),
                     programs,
+                    promise,
                 };
             }
         }
@@ -154,6 +166,22 @@ impl Run<'_> {
             next: Some(poses.to_vec()),
             proof: None,
             programs,
+            promise,
+        }
+    }
+
+    /// Goes a part of a direction, and proves the way.
+    fn attempt(&self, poses: &[Pose], pairs: &[Pair], direction: &[[f64; 3]], part: f64) -> Tried {
+        let trial = self
+            .grain()
+            .moved(poses, &self.scaffold.forms, direction, part);
+        let there = self.scaffold.place(&trial);
+        if self.exceeds(pairs, &there, &Rat::zero()) {
+            return Tried::Short;
+        }
+        match Motion::new(&self.scaffold, poses, &trial).prove() {
+            Ok(proof) => Tried::Proven(trial, proof),
+            Err(contacts) => Tried::Met(contacts),
         }
     }
 }
@@ -165,15 +193,26 @@ fn length(row: &Row) -> Int {
     square.sqrt().unwrap_or_else(Int::zero) + Int::one()
 }
 
-/// The row with a distance held back.
-fn hold(row: &Row, distance: f64) -> Row {
-    if distance <= 0.0 {
+/// Bits of what is held back: as many as make it no more than a 500th too much.
+const HELD_BITS: u64 = 10;
+
+/// The row with a distance held back, or a little more; one that is negative is given.
+pub(crate) fn hold(row: &Row, distance: f64) -> Row {
+    let back = Rat::from_f64(distance) * Rat::from(length(row));
+    if back.is_zero() {
         return row.clone();
     }
-    let back = Rat::from_f64(distance) * Rat::from(length(row));
+    // The units of a row may be coarse (a distance of 3, say): in finer ones, then.
+    let bits = back.numer().bits() as i64 - back.denom().bits() as i64;
+    let up = (HELD_BITS as i64 - bits).max(0).unsigned_abs();
+    let down = (bits - HELD_BITS as i64).max(0).unsigned_abs();
+    let back = (back * Rat::new(Int::one().shl(up), Int::one().shl(down))).ceil();
     Row {
-        d0: &row.d0 - &back.ceil(),
-        ..row.clone()
+        pair: row.pair,
+        normal: row.normal.each_ref().map(|v| v.shl(up)),
+        theta1: row.theta1.shl(up),
+        theta2: row.theta2.shl(up),
+        d0: row.d0.shl(up) - back.shl(down),
     }
 }
 

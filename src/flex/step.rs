@@ -5,22 +5,28 @@
 //! no more than the threshold; the next program enforces the constraints again, so errors do not
 //! add up. Stepping ends where a step gains less than asked.
 //!
+//! Gradients are taken at stations near the bodies (`station`).
+//!
 //! *Rounding.* A rotation by sδ is applied as the rational rotation of half-tangent sδ/2 (which
 //! agrees with it up to the third order), then tan(θ/2) is replaced by the simplest fraction near
 //! it and positions by multiples of a power of two. The radius of rounding is a small part of the
 //! threshold, so digits never pile up, and whatever rounding does to the constraints is seen by
 //! the same exact test, since it judges the rounded configuration.
 
+use super::bend::Bend;
 use super::branch::{self, Solved};
-use super::model::{Form, Row, Scaffold};
+use super::grain::Grain;
+use super::model::{Row, Scaffold};
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
+use super::safe;
 use super::shape::{Placed, Pose, double};
+use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
 use crate::lp::{self, Place, Places, Status};
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cell::RefCell;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::time::{Duration, Instant};
 
 /// What facing convex corners become (PF §V-A).
@@ -176,13 +182,18 @@ impl Violation {
 pub(crate) struct Run<'a> {
     pub(crate) structure: &'a Structure,
     pub(crate) scaffold: Scaffold,
+    pub(crate) stations: Stations,
     pub(crate) options: &'a FlexOptions<'a>,
     pub(crate) deadline: Option<Instant>,
     /// No vertex is farther from its body's reference point.
     reach: f64,
-    /// Part of the gain asked for that the finest grain is: what rounding takes from bodies in a
-    /// row adds up.
+    /// What distances and poses are rounded by: a part of the gain asked for, since what rounding
+    /// takes from bodies in a row adds up.
     fine: f64,
+    /// The pairs of the step before.
+    kept: Vec<Pair>,
+    /// Whether a step has lost what the one before had gained.
+    swung: bool,
     /// The last optimal basis: places of the columns, and of rows by pair.
     memory: RefCell<Option<Memory>>,
 }
@@ -199,30 +210,15 @@ struct Taken {
     scale: Rat,
     next: Option<Vec<Pose>>,
     proof: Option<ProofSize>,
+    /// What a safe step's program promised; zero for a fast one.
+    promise: f64,
 }
 
-/// Radii of rounding.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Grain {
-    /// Positions are multiples of 2⁻ᵏ for this k.
-    place_bits: u32,
-    /// tan(θ/2) may move by this much times (1 + tan²).
-    turn: f64,
-}
-
-impl Grain {
-    /// A grain for poses that are to be kept within a distance.
-    pub(crate) fn of(distance: f64, reach: f64) -> Grain {
-        let bits = (-distance.log2()).ceil().clamp(0.0, 50.0) as u32 + 1;
-        Grain {
-            place_bits: bits,
-            turn: (distance / (4.0 * reach.max(1e-9))).clamp(1e-15, 1e-3),
-        }
-    }
-}
-
-/// How coarse rounding may be: as a part of the violation allowed, and of a step's promise.
-const GRAIN_PARTS: (f64, f64) = (1.0 / 64.0, 1e-4);
+/// The grain of distances: this part of the gain at which stepping ends, over the bodies.
+const FINE: f64 = 0.25;
+/// A vertex that slides past the end of its edge by no more than this, in violations allowed, is
+/// still held by it: or steps would let it go and catch it again in turn.
+const KEPT: f64 = 10.0;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -237,12 +233,16 @@ impl<'a> Run<'a> {
     pub(crate) fn new(structure: &'a Structure, options: &'a FlexOptions<'a>) -> Run<'a> {
         let scaffold = Scaffold::new(structure);
         let reach = scaffold.shapes.iter().map(|s| s.reach).fold(0.0, f64::max);
+        let fine = double(&structure.step.gain) * FINE / structure.bodies.len().max(1) as f64;
         Run {
             structure,
+            stations: Stations::new(&scaffold, reach, fine),
             reach,
-            fine: 0.5 / structure.bodies.len().max(1) as f64,
+            fine,
             scaffold,
             options,
+            kept: Vec::new(),
+            swung: false,
             memory: RefCell::new(None),
             deadline: options
                 .time_limit
@@ -278,7 +278,7 @@ impl<'a> Run<'a> {
 
     /// Builds and solves the program of some rows.
     pub(crate) fn program(&self, rows: &[Row], poses: &[Pose]) -> (lp::Model, lp::Outcome) {
-        let model = self.scaffold.program(rows, poses);
+        let model = self.scaffold.program(rows, poses, &self.stations.poses);
         if let Some(show) = self.options.programs {
             show(&model);
         }
@@ -310,8 +310,6 @@ impl<'a> Run<'a> {
             columns: self.scaffold.column_count,
         };
         let mut last_gain = 0.0;
-        // A safe step is guessed to gain a tenth of the one before.
-        let mut promise = f64::INFINITY;
         // Whether no contact came yet.
         let mut clear = true;
         let mut pairs = Vec::new();
@@ -322,9 +320,10 @@ impl<'a> Run<'a> {
             }
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
+            self.stations.follow(&self.scaffold, &poses, &placed);
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
-                let safe = self.safe_step(&poses, &placed, k > 0, promise);
+                let safe = self.safe_step(&poses, &placed, k > 0);
                 Taken {
                     model_seconds: 0.0,
                     rows: safe.rows.len(),
@@ -334,17 +333,22 @@ impl<'a> Run<'a> {
                     scale: safe.scale,
                     next: safe.next,
                     proof: safe.proof,
+                    promise: safe.promise,
                 }
             } else {
                 let selection = self.selection(&placed, k > 0);
                 let (pairs, rows) = self.rows(&selection, &placed);
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
-                let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                let next = solved.direction.as_ref().map(|direction| {
-                    let grain = self.grain(double(&solved.objective));
-                    self.search(&pairs, &poses, direction, grain)
-                });
+                let mut solved = branch::solve(&self, &rows, &selection, &placed, &poses);
+                if self.swung {
+                    solved =
+                        self.corrected(solved, &pairs, rows.clone(), &selection, &placed, &poses);
+                }
+                let next = solved
+                    .direction
+                    .as_ref()
+                    .map(|direction| self.search(&pairs, &poses, direction));
                 let (scale, next) = next.unzip();
                 Taken {
                     model_seconds,
@@ -355,9 +359,11 @@ impl<'a> Run<'a> {
                     scale: scale.unwrap_or_else(Rat::zero),
                     next,
                     proof: None,
+                    promise: 0.0,
                 }
             };
             pairs.clone_from(&taken.pairs);
+            self.kept.clone_from(&pairs);
             let stopped = taken.next.is_none();
             if stopped {
                 out.ending = match taken.solved.status {
@@ -371,12 +377,8 @@ impl<'a> Run<'a> {
             let gain = &reached - &out.displacement;
             if rules.path == Path::Safe && !stopped && gain.sign() < 0 {
                 // Nothing is violated on a safe path, so nothing calls for a step back: it comes
-                // from what is held back. Held back less, there may yet be something to gain.
-                if promise > 0.0 {
-                    promise = 0.0;
-                    continue;
-                }
-                out.ending = Ending::Converged;
+                // from what is held back, and there is nothing more to gain.
+                out.ending = self.settled(taken.promise);
                 break;
             }
             let contact = if clear && self.options.contact && taken.proof.is_none() {
@@ -411,7 +413,7 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
-            promise = last_gain / 10.0;
+            self.swung |= gain.sign() < 0;
             // Where other corners face each other a step later, what one step gains the next may
             // take back, over and over: the two together gain nothing.
             let steps = &out.steps;
@@ -419,7 +421,7 @@ impl<'a> Run<'a> {
                 && gain.sign() < 0
                 && (&gain + &steps[steps.len() - 2].gain).abs() < rules.gain;
             if gain.abs() < rules.gain || swings {
-                out.ending = Ending::Converged;
+                out.ending = self.settled(taken.promise);
                 break;
             }
         }
@@ -429,6 +431,16 @@ impl<'a> Run<'a> {
         }
         out.violation = self.worst(&pairs, &placed);
         out
+    }
+
+    /// How a run ends that gains no more: converged, unless its program promised a safe step
+    /// much more than what could be proven.
+    fn settled(&self, promise: f64) -> Ending {
+        if promise > 10.0 * double(&self.structure.step.gain) {
+            Ending::Undecided
+        } else {
+            Ending::Converged
+        }
     }
 
     fn tell(&self, step: usize, out: &Flexed, gain: f64, rows: usize) {
@@ -443,16 +455,10 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The grain of a step that promises a gain: coarse while there is much to gain, since short
-    /// numbers make quick programs, and at last finer than the gain at which stepping ends.
-    pub(crate) fn grain(&self, promise: f64) -> Grain {
-        let rules = &self.structure.step;
-        let least = double(&rules.gain) * self.fine;
-        let most = double(&rules.violation) * GRAIN_PARTS.0;
-        Grain::of(
-            (promise.abs() * GRAIN_PARTS.1).min(most).max(least),
-            self.reach,
-        )
+    /// The grain that poses are rounded to: finer than that of distances, so that rounding alone
+    /// does not move a distance off its multiple.
+    pub(crate) fn grain(&self) -> Grain {
+        Grain::of(self.fine / 16.0, self.reach)
     }
 
     /// The pairs of a configuration. At the start nothing overlaps; later on a vertex may lie
@@ -463,7 +469,13 @@ impl<'a> Run<'a> {
         } else {
             Rat::zero()
         };
-        select(&self.scaffold, placed, &slack)
+        let mut selection = select(&self.scaffold, placed, &slack);
+        let known: HashSet<Pair> = selection.pairs.iter().copied().collect();
+        let past = KEPT * double(&self.structure.step.violation);
+        let stays = |p: &&Pair| !known.contains(p) && self.scaffold.holds_on(p, placed, past);
+        let kept: Vec<Pair> = self.kept.iter().filter(stays).copied().collect();
+        selection.pairs.extend(kept);
+        selection
     }
 
     /// All rows that hold together: the pairs and, where corners are averaged, theirs.
@@ -472,21 +484,73 @@ impl<'a> Run<'a> {
         if self.options.corners == Corners::Average {
             pairs.extend(self.scaffold.averaged(&selection.facing));
         }
-        let rows = pairs.iter().map(|p| self.scaffold.row(p, placed)).collect();
+        let rows = pairs.iter().map(|p| self.row(p, placed)).collect();
         (pairs, rows)
+    }
+
+    /// The row of a pair in a step's program.
+    pub(crate) fn row(&self, pair: &Pair, placed: &[Placed]) -> Row {
+        let rounding = match self.structure.step.path {
+            Path::Fast => Rounding::Nearest,
+            Path::Safe => Rounding::Down,
+        };
+        self.stations.row(&self.scaffold, pair, placed, rounding)
+    }
+
+    /// Where steps begin to take back what others gained, second-order terms decide: the program
+    /// once more, with each distance put right by what the first solution was off at its end.
+    fn corrected(
+        &self,
+        first: Solved,
+        pairs: &[Pair],
+        mut rows: Vec<Row>,
+        selection: &Selection,
+        placed: &[Placed],
+        poses: &[Pose],
+    ) -> Solved {
+        let Some(direction) = &first.direction else {
+            return first;
+        };
+        let bend = self.bend(pairs, poses);
+        let forms = &self.scaffold.forms;
+        let there = self
+            .grain()
+            .moved(poses, forms, &bend.follow(direction, 1.0), 1.0);
+        let there = self.scaffold.place(&there);
+        for (row, pair) in rows.iter_mut().zip(pairs) {
+            let off = self.scaffold.near(pair, &there).0 - safe::linear(row, direction);
+            *row = safe::hold(row, -off);
+        }
+        let second = branch::solve(self, &rows, selection, placed, poses);
+        if second.direction.is_none() {
+            return first;
+        }
+        Solved {
+            programs: first.programs + second.programs,
+            exact_pivots: first.exact_pivots + second.exact_pivots,
+            ..second
+        }
+    }
+
+    /// How directions are followed from a configuration.
+    fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
+        // Robots of a flock are not joined: they go straight.
+        let joined = self.scaffold.nearest.is_none() && self.scaffold.views.is_empty();
+        let links = pairs
+            .iter()
+            .filter(|_| joined)
+            .map(|p| (p.line_body as usize, p.point_body as usize));
+        Bend::new(&self.scaffold.forms, poses, links)
     }
 
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
-    fn search(
-        &self,
-        pairs: &[Pair],
-        poses: &[Pose],
-        direction: &[[f64; 3]],
-        grain: Grain,
-    ) -> (Rat, Vec<Pose>) {
+    fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
-        let at = |scale: f64| self.moved(poses, direction, scale, grain);
+        let grain = self.grain();
+        let forms = &self.scaffold.forms;
+        let bend = self.bend(pairs, poses);
+        let at = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
         let good = |poses: &[Pose]| {
             let placed = self.scaffold.place(poses);
             !self.exceeds(pairs, &placed, allowed)
@@ -508,29 +572,6 @@ impl<'a> Run<'a> {
             }
         }
         (Rat::from_f64(low), best)
-    }
-
-    /// The configuration after a direction at a scale, rounded.
-    pub(crate) fn moved(
-        &self,
-        poses: &[Pose],
-        direction: &[[f64; 3]],
-        scale: f64,
-        grain: Grain,
-    ) -> Vec<Pose> {
-        let turns = |k: usize| match self.scaffold.forms[k] {
-            Form::Fixed => None,
-            _ => grain.turned(&poses[k], direction[k][2] * scale),
-        };
-        let turns: Vec<Option<(f64, f64)>> = (0..poses.len()).map(turns).collect();
-        let turned = shared(&turns);
-        let each = poses.iter().zip(direction).zip(&self.scaffold.forms);
-        each.zip(turned)
-            .map(|(((pose, d), form), turned)| match form {
-                Form::Fixed => pose.clone(),
-                _ => grain.advance(pose, d.map(|v| v * scale), turned),
-            })
-            .collect()
     }
 
     /// Whether a pair is violated by more than a distance, exactly.
@@ -584,92 +625,4 @@ impl<'a> Run<'a> {
 pub(crate) fn violation(row: &Row) -> Rat {
     let [x, y] = &row.normal;
     Rat::new(&row.d0 * &row.d0, x * x + y * y)
-}
-
-impl Grain {
-    /// The distance that rounding may move a vertex by, roughly.
-    pub(crate) fn distance(&self) -> f64 {
-        2f64.powi(1 - self.place_bits as i32)
-    }
-
-    /// The range for tan(θ/2) of a pose turned by dθ; None where it does not turn. Doubles are
-    /// good enough for what is rounded anyway.
-    fn turned(&self, pose: &Pose, by: f64) -> Option<(f64, f64)> {
-        let half = by / 2.0;
-        let u = double(&pose.tan_half);
-        let turned = (u + half) / (1.0 - u * half);
-        let radius = self.turn * (1.0 + turned * turned);
-        (half != 0.0 && turned.is_finite()).then_some((turned - radius, turned + radius))
-    }
-
-    /// A pose moved by (dx, dy), rounded, and turned to a given tan(θ/2). A motion that is no
-    /// number leaves the pose as it is.
-    pub(crate) fn advance(&self, pose: &Pose, by: [f64; 3], turned: Option<Rat>) -> Pose {
-        if by.iter().any(|v| !v.is_finite()) {
-            return pose.clone();
-        }
-        let tan_half = turned.unwrap_or_else(|| pose.tan_half.clone());
-        let shift = |at: &Rat, d: f64| {
-            if d == 0.0 {
-                return at.clone();
-            }
-            let scale = Int::one().shl(u64::from(self.place_bits));
-            let moved = (at + &Rat::from_f64(d)) * Rat::from(scale.clone());
-            Rat::new((moved + Rat::frac(1, 2)).floor(), scale)
-        };
-        Pose {
-            place: crate::geometry::Vec2::new(
-                shift(&pose.place.x, by[0]),
-                shift(&pose.place.y, by[1]),
-            ),
-            tan_half,
-        }
-    }
-}
-
-/// A simple fraction in each range, as few different ones as there can be: bodies that round alike
-/// stand exactly parallel, and their rows become dependent rather than nearly so.
-fn shared(ranges: &[Option<(f64, f64)>]) -> Vec<Option<Rat>> {
-    let mut order: Vec<(f64, f64, usize)> = ranges
-        .iter()
-        .enumerate()
-        .filter_map(|(k, r)| r.map(|(lo, hi)| (lo, hi, k)))
-        .collect();
-    order.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
-    let mut out = vec![None; ranges.len()];
-    let mut begin = 0;
-    while begin < order.len() {
-        // All ranges that hold the end of the first one meet.
-        let hi = order[begin].1;
-        let mut end = begin;
-        let mut lo = f64::NEG_INFINITY;
-        while end < order.len() && order[end].0 <= hi {
-            lo = lo.max(order[end].0);
-            end += 1;
-        }
-        let one = simplest(&Rat::from_f64(lo), &Rat::from_f64(hi));
-        for (_, _, k) in &order[begin..end] {
-            out[*k] = Some(one.clone());
-        }
-        begin = end;
-    }
-    out
-}
-
-/// The fraction of least denominator in [lo, hi] (lo ≤ hi), by continued fractions.
-pub(crate) fn simplest(lo: &Rat, hi: &Rat) -> Rat {
-    if lo.sign() <= 0 && hi.sign() >= 0 {
-        return Rat::zero();
-    }
-    if hi.sign() < 0 {
-        return -simplest(&-hi, &-lo);
-    }
-    let whole = lo.ceil();
-    if Rat::from(whole.clone()) <= *hi {
-        return Rat::from(whole);
-    }
-    // Both share their whole part, and neither is whole.
-    let whole = Rat::from(lo.floor());
-    let rest = simplest(&(hi - &whole).recip(), &(lo - &whole).recip());
-    whole + rest.recip()
 }

@@ -163,17 +163,49 @@ impl Tree {
         Tree { hulls, levels, ids }
     }
 
-    /// Calls `found` with the entries whose hulls may meet `h`, until it says false.
-    pub(crate) fn query(&self, h: &Hull, found: impl FnMut(u32) -> bool) {
-        self.descend(|node| !node.apart(h), found);
+    /// How many places there are: entries first, then nodes, each after all that it holds.
+    pub(crate) fn len(&self) -> usize {
+        self.hulls.len()
     }
 
-    /// Walks the tree from the root; only nodes that `wanted` admits are entered. Nodes with larger t come
+    /// How many of them are entries.
+    pub(crate) fn entries(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// The hull at a place.
+    pub(crate) fn hull(&self, at: usize) -> &Hull {
+        &self.hulls[at]
+    }
+
+    /// What the entry at a place stands for.
+    pub(crate) fn entry(&self, at: usize) -> u32 {
+        self.ids[at]
+    }
+
+    /// The places that a node holds; None for an entry.
+    pub(crate) fn children(&self, at: usize) -> Option<std::ops::Range<usize>> {
+        let level = self.levels.iter().rposition(|&from| from <= at)?;
+        // The last level's end is listed too.
+        let level = level.min(self.levels.len().checked_sub(2)?);
+        if level == 0 {
+            return None;
+        }
+        let first = self.levels[level - 1] + (at - self.levels[level]) * FAN;
+        Some(first..self.levels[level].min(first + FAN))
+    }
+
+    /// Calls `found` with the entries whose hulls may meet `h`, until it says false.
+    pub(crate) fn query(&self, h: &Hull, found: impl FnMut(u32) -> bool) {
+        self.descend(|_, node| !node.apart(h), found);
+    }
+
+    /// Walks the tree from the root; only places that `wanted` admits are entered. Nodes with larger t come
     /// first, roughly, so that a search for the highest entry below a point prunes early. Ends when `found`
     /// says false.
     pub(crate) fn descend(
         &self,
-        mut wanted: impl FnMut(&Hull) -> bool,
+        mut wanted: impl FnMut(usize, &Hull) -> bool,
         mut found: impl FnMut(u32) -> bool,
     ) {
         if self.ids.is_empty() {
@@ -185,7 +217,7 @@ impl Tree {
         while top > 0 {
             top -= 1;
             let (level, at) = (stack[top].0 as usize, stack[top].1 as usize);
-            if !wanted(&self.hulls[at]) {
+            if !wanted(at, &self.hulls[at]) {
                 continue;
             }
             if level == 0 {

@@ -15,8 +15,10 @@
 //! | `defects` | what keeps a polygon from being one? |
 //! | `overlap` | do two regions' interiors share a point? |
 //! | `index` | which pieces may meet this one? |
+//! | `chain` | which edges of a polyline may meet a region? |
 
 mod box2;
+pub(crate) mod chain;
 mod defects;
 pub(crate) mod index;
 mod overlap;

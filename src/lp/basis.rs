@@ -312,6 +312,11 @@ impl ColumnVector {
         self.solution.approximate(&q.terms, &q.constant)
     }
 
+    /// The same as a double and an exponent of two.
+    pub(crate) fn scaled(&self, q: &Query) -> (f64, i64) {
+        self.solution.scaled(&q.terms, &q.constant)
+    }
+
     /// The exact value times the solution's denominator.
     pub(crate) fn numerator(&self, q: &Query) -> Int {
         self.solution.numerator(&q.terms, &q.constant)

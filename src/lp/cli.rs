@@ -6,7 +6,8 @@ use super::read::read_model;
 use super::report::{from_json, to_json};
 use super::solve::{Accuracy, Method, Options, solve};
 use crate::certificate::lp::verify;
-use std::io::{Read, Write};
+use crate::certificate::lp_result::agrees;
+use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -39,7 +40,7 @@ pub struct LpArgs {
     #[arg(long, value_name = "MIB")]
     pub memory_limit: Option<u64>,
     /// Write the result there instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Show no progress on a terminal
     #[arg(long)]
@@ -92,8 +93,11 @@ fn bad(message: impl std::fmt::Display) -> u8 {
     BAD
 }
 
+/// Writes a result to a file, or to standard output.
+pub type Write<'a> = &'a dyn Fn(Option<&Path>, &str) -> Result<(), String>;
+
 /// Runs `snapfit lp`; the result is the exit status. What it is at is noted in `meter`.
-pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>) -> u8 {
+pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>, write: Write<'_>) -> u8 {
     let time_limit = match args.time_limit {
         None => None,
         Some(s) => match Duration::try_from_secs_f64(s) {
@@ -125,16 +129,16 @@ pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>) -> u8 {
             Ok(m) => m,
         },
     };
+    if model.relaxed && !args.quiet {
+        let _ = writeln!(
+            std::io::stderr(),
+            "{name}: warning: integer columns are relaxed; what follows is the continuous program"
+        );
+    }
     let outcome = solve(&model, &options);
     let mut text = to_json(&model, &name, &outcome).to_string();
     text.push('\n');
-    let written = match &args.out {
-        Some(path) => std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display())),
-        None => std::io::stdout()
-            .lock()
-            .write_all(text.as_bytes())
-            .map_err(|e| format!("standard output: {e}")),
-    };
+    let written = write(args.out.as_deref(), &text);
     match written {
         Err(e) => bad(e),
         Ok(()) if outcome.status == Status::Undecided => UNDECIDED,
@@ -142,8 +146,16 @@ pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>) -> u8 {
     }
 }
 
+/// The model that a result names: from here or, where there is none, from where the result is.
+fn beside(model: &Path, result: &Path) -> PathBuf {
+    match result.parent() {
+        Some(folder) if !model.exists() && folder.join(model).exists() => folder.join(model),
+        _ => model.to_owned(),
+    }
+}
+
 /// Runs `snapfit verify`; the result is the exit status.
-pub fn run_verify(args: &VerifyArgs) -> u8 {
+pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
     let result = match read(&args.result) {
         Err(e) => return bad(e),
         Ok(bytes) => bytes,
@@ -151,12 +163,27 @@ pub fn run_verify(args: &VerifyArgs) -> u8 {
     let name = args.result.display();
     let result: serde_json::Value = match serde_json::from_slice(&result) {
         Ok(v) => v,
-        Err(e) => return bad(format!("{name}:{}:{}: {e}", e.line(), e.column())),
+        Err(e) => {
+            return bad(format!(
+                "{name}:{}:{}: not a result of `snapfit lp`, which is JSON: {e}",
+                e.line().max(1),
+                e.column().max(1)
+            ));
+        }
     };
     let path = match (&args.model, result["model"].as_str()) {
         (Some(p), _) => p.clone(),
-        (None, Some(p)) => PathBuf::from(p),
-        (None, None) => return bad(format!("{name}: the result names no model")),
+        (None, Some("-")) => {
+            return bad(format!(
+                "{name}: its model came from standard input; name it by --model FILE"
+            ));
+        }
+        (None, Some(p)) => beside(Path::new(p), &args.result),
+        (None, None) => {
+            return bad(format!(
+                "{name}: this is no result of `snapfit lp`: it names no model"
+            ));
+        }
     };
     let model = match read(&path) {
         Err(e) => return bad(e),
@@ -167,15 +194,15 @@ pub fn run_verify(args: &VerifyArgs) -> u8 {
     };
     let (verdict, reason, code) = match from_json(&model, &result) {
         Err(e) => ("rejected", Some(e), REJECTED),
-        Ok(claim) => match verify(&model, &claim) {
+        Ok(claim) => match verify(&model, &claim).and_then(|()| agrees(&model, &claim, &result)) {
             Ok(()) => ("verified", None, 0),
             Err(e) => ("rejected", Some(e.0), REJECTED),
         },
     };
     let verdict =
         serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] });
-    match writeln!(std::io::stdout(), "{verdict}") {
+    match write(None, &format!("{verdict}\n")) {
         Ok(()) => code,
-        Err(e) => bad(format!("standard output: {e}")),
+        Err(e) => bad(e),
     }
 }

@@ -53,6 +53,8 @@ pub(crate) struct Prime {
     negative_inverse: u64,
     /// p⁻¹ modulo 2⁶⁴.
     pub(crate) inverse: u64,
+    /// 2⁶⁴ modulo p.
+    r: u64,
     /// 2¹²⁸ modulo p.
     r2: u64,
 }
@@ -86,6 +88,7 @@ impl Prime {
             p,
             inverse,
             negative_inverse: inverse.wrapping_neg(),
+            r,
             r2: (u128::from(r) * u128::from(r) % u128::from(p)) as u64,
         }
     }
@@ -113,6 +116,16 @@ impl Prime {
     pub(crate) fn residue(&self, a: i64) -> u64 {
         let r = a.unsigned_abs() % self.p;
         if a < 0 && r != 0 { self.p - r } else { r }
+    }
+
+    /// r·2⁶⁴ + w for a residue and a word.
+    pub(crate) fn append(&self, r: u64, w: u64) -> u64 {
+        let t = u128::from(r) * u128::from(self.r2) + u128::from(w) * u128::from(self.r);
+        let m = (t as u64).wrapping_mul(self.negative_inverse);
+        // t < 2⁶⁴p + 2¹¹⁴, so this is below 3p.
+        let r = ((t + u128::from(m) * u128::from(self.p)) >> 64) as u64;
+        let r = if r >= self.p { r - self.p } else { r };
+        if r >= self.p { r - self.p } else { r }
     }
 
     /// a − b of residues.

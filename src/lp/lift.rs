@@ -14,7 +14,7 @@
 //! in size, hence zero exactly where Σ aⱼxⱼ ≡ c modulo M; most non-zeros show in the first digit.
 
 use super::budget::{Budget, Exhausted};
-use super::field::Prime;
+use super::field::{Double, Prime};
 use super::lu::{Lu, Singular, factorise};
 use super::problem::{Matrix, Problem};
 use super::reconstruct::reconstruct;
@@ -24,6 +24,12 @@ use crate::number::Int;
 const PRECISION: usize = 4;
 /// Random combinations whose denominators are joined.
 const COMBINATIONS: usize = 6;
+/// Components of a solution that are worked on together.
+const BLOCK: usize = 64;
+/// Factors that are added to a denominator before it is given up.
+const COMPLETIONS: usize = 4;
+/// Rows of a kernel below which it is not worth while to foresee the denominator's length.
+const SMALL: usize = 50;
 
 /// A square part of the program's matrix, factorised modulo a prime.
 #[derive(Clone, Debug)]
@@ -117,25 +123,67 @@ impl Kernel {
         if let Some(d) = guess {
             let extra = (self.norm_bits.max(rhs_bits) / 57) as usize;
             let digits = (d.bits() / 56) as usize + 2 * extra + PRECISION + 2;
-            lift.extend(digits, budget)?;
-            if let Some(s) = lift.prove(d) {
-                return Ok(s);
+            // Often it lacks but a small factor, which shows a little later.
+            for more in [0, digits / 32 + 2, digits / 8 + 2] {
+                lift.extend(digits + more, budget)?;
+                if more == 0 {
+                    if let Ok(s) = lift.prove(d) {
+                        return Ok(s);
+                    }
+                } else if let Some(d) = lift.denominator(more as u64, d.clone())
+                    && let Some(s) = lift.prove_or_complete(d)
+                {
+                    return Ok(s);
+                }
             }
         }
+        let target = self.expected_digits(rhs_bits);
         let mut digits = lift.digits.len().max(2);
         let mut salt = 0;
         loop {
             lift.extend(digits, budget)?;
-            if let Some(d) = lift.denominator(salt) {
-                let proof = lift.prove(&d);
-                if let Some(s) = proof {
-                    return Ok(s);
-                }
+            if let Some(d) = lift.denominator(salt, Int::one())
+                && let Some(s) = lift.prove_or_complete(d)
+            {
+                return Ok(s);
             }
             budget.check()?;
             salt += 1;
-            digits += 1 + digits / 6;
+            // Denominators far below the determinant are looked for on the way to it.
+            digits += match target {
+                Some(t) if digits < t && 4 * digits > 3 * t => t - digits,
+                Some(t) if digits < t => 1 + (3 * digits / 10).min(t - digits),
+                _ => 1 + digits / 6,
+            };
         }
+    }
+
+    /// Digits that show a solution whose denominator is the whole determinant, by floats.
+    fn expected_digits(&self, rhs_bits: u64) -> Option<usize> {
+        if self.size() < SMALL {
+            return None;
+        }
+        let n = self.size();
+        let entry = |e: usize| mantissa(&self.by_columns.int(e));
+        let mut high = vec![i64::MIN; n];
+        for e in 0..self.by_columns.index.len() {
+            let place = &mut high[self.by_columns.index[e] as usize];
+            *place = (*place).max(entry(e).1);
+        }
+        let columns: Vec<Vec<(u32, f64)>> = (0..n)
+            .map(|j| {
+                let span = self.by_columns.span(j);
+                span.map(|e| {
+                    let (i, (a, x)) = (self.by_columns.index[e], entry(e));
+                    (i, ldexp(a, x - high[i as usize]))
+                })
+                .collect()
+            })
+            .collect();
+        let lu = factorise(&Double, &columns, 0.1, 1e-13).ok()?;
+        let bits = lu.log2_determinant() + high.iter().sum::<i64>() as f64;
+        let bits = 2.0 * bits.clamp(0.0, 1e12) + 2.0 * (rhs_bits + 64) as f64;
+        Some((bits / 56.0) as usize + PRECISION)
     }
 }
 
@@ -144,11 +192,9 @@ fn residue(field: &Prime, words: &[u64]) -> u64 {
     let Some((&top, rest)) = words.split_last() else {
         return 0;
     };
-    let mut r = field.residue(top as i64);
-    for &w in rest.iter().rev() {
-        r = (((u128::from(r) << 64) | u128::from(w)) % u128::from(field.p)) as u64;
-    }
-    r
+    rest.iter()
+        .rev()
+        .fold(field.residue(top as i64), |r, &w| field.append(r, w))
 }
 
 /// Digits base p of an integer, all of its sign.
@@ -289,18 +335,13 @@ impl<'a> Lifting<'a> {
         Ok(())
     }
 
-    /// A common denominator of all components, likely but not certain.
-    fn denominator(&self, salt: u64) -> Option<Int> {
+    /// A common denominator of all components, likely but not certain: a multiple of `d`.
+    fn denominator(&self, salt: u64, mut d: Int) -> Option<Int> {
         let modulus = self.p.pow(self.digits.len() as u32);
-        let mut d = Int::one();
         for c in 0..COMBINATIONS {
             let combined = self.combination(salt * COMBINATIONS as u64 + c as u64);
-            let u = if c == 0 {
-                combined
-            } else {
-                (&combined * &d).div_rem_floor(&modulus).1
-            };
-            if c > 0 && nearest(&u, &modulus).bits() + 44 < modulus.bits() {
+            let u = (&combined * &d).div_rem_floor(&modulus).1;
+            if nearest(&u, &modulus).bits() + 44 < modulus.bits() {
                 continue; // already integral
             }
             d = &d * &reconstruct(&u, &modulus)?.1;
@@ -333,31 +374,157 @@ impl<'a> Lifting<'a> {
         compose(&parts, &self.p)
     }
 
-    /// The solution if `d` is a denominator and there are digits enough to prove it.
-    fn prove(&mut self, d: &Int) -> Option<Solution> {
+    /// The solution if `d`, or a multiple of it that shows, is a denominator and there are digits
+    /// enough to prove it.
+    fn prove_or_complete(&mut self, mut d: Int) -> Option<Solution> {
+        for _ in 0..COMPLETIONS {
+            match self.prove(&d) {
+                Ok(s) => return Some(s),
+                Err(missing) => d = &d * &missing?,
+            }
+        }
+        None
+    }
+
+    /// The solution if `d` is a denominator and there are digits enough to prove it; else perhaps
+    /// a factor that it lacks, greater than one.
+    fn prove(&mut self, d: &Int) -> Result<Solution, Option<Int>> {
         let bits = 56; // of a digit, rounded down
         // What Σ aN and D·c can reach in the tests of `Solution`, as bits below those of M.
         let norm = self.kernel.norm_bits.max(self.rhs_bits);
         let margin = (norm as usize + 8).div_ceil(bits) + 1;
         let base = ((d.bits() + 2 * norm + 8) as usize).div_ceil(bits);
         let base = base.max((d.bits() as usize).div_ceil(bits) + margin);
+        // Long denominators come with values that fall off far: look deeper.
+        let precision = PRECISION + d.bits() as usize / (24 * bits);
+        let mut window = Window::new(&self.p, d, base.saturating_sub(margin + precision));
         let mut extra = 0;
         loop {
             let count = base + extra;
             if count > self.digits.len() {
-                return None;
+                return Err(None);
             }
-            // Long denominators come with values that fall off far: look deeper.
-            let precision = PRECISION + d.bits() as usize / (24 * bits);
-            let width = (margin + precision + extra).min(count);
-            let solution = Solution::new(&self.p, &self.digits, d, count, width, norm);
-            if let Some(mut s) = solution {
-                self.digits.truncate(count);
-                s.digits = std::mem::take(&mut self.digits);
-                return Some(s);
+            window.extend(&self.digits, count - window.low);
+            let large = match window.proves(&self.p, d, norm) {
+                Ok(mut s) => {
+                    self.digits.truncate(count);
+                    s.digits = std::mem::take(&mut self.digits);
+                    return Ok(s);
+                }
+                Err(j) => j,
+            };
+            // Either this component is large, or its denominator is another.
+            let modulus = self.p.pow(self.digits.len() as u32);
+            let parts: Vec<Int> = self.digits.iter().map(|x| Int::from(x[large])).collect();
+            let u = nearest(&(&compose(&parts, &self.p) * d), &modulus);
+            let needed = ((u.bits() + norm + 8) as usize).div_ceil(bits) + 1;
+            if needed > self.digits.len() {
+                let factor = reconstruct(&u, &modulus).map(|r| r.1);
+                let room = modulus.bits().saturating_sub(d.bits());
+                return Err(factor.filter(|t| *t > Int::one() && t.bits() < room));
             }
-            extra = extra * 2 + 1;
+            extra = (extra + 1).max(needed.saturating_sub(base));
         }
+    }
+}
+
+/// The digits of D·xⱼ from a place on, carries not yet taken.
+struct Window {
+    denominator: Vec<u64>,
+    /// Digits below.
+    low: usize,
+    /// By digit, then component.
+    sums: Vec<Vec<u128>>,
+    /// What overflowed from the sums, where there can be such.
+    carries: Vec<Vec<u32>>,
+}
+
+impl Window {
+    fn new(p: &Int, d: &Int, low: usize) -> Window {
+        Window {
+            denominator: digits_of(d, p).into_iter().map(|v| v as u64).collect(),
+            low,
+            sums: Vec::new(),
+            carries: Vec::new(),
+        }
+    }
+
+    /// Widens to a number of digits.
+    fn extend(&mut self, digits: &[Vec<u64>], width: usize) {
+        let n = digits.first().map_or(0, Vec::len);
+        let long = self.denominator.len() > 8000;
+        let done = self.sums.len();
+        for _ in done..width {
+            self.sums.push(vec![0; n]);
+            if long {
+                self.carries.push(vec![0; n]);
+            }
+        }
+        // Block by block, so that the digits of a block stay in the cache.
+        for start in (0..n).step_by(BLOCK) {
+            let block = start..(start + BLOCK).min(n);
+            for t in done..width {
+                let top = self.low + t;
+                let sum = &mut self.sums[t][block.clone()];
+                for (i, &d) in self.denominator.iter().enumerate().take(top + 1) {
+                    let x = &digits[top - i][block.clone()];
+                    if long {
+                        let carry = &mut self.carries[t][block.clone()];
+                        for ((s, &x), c) in sum.iter_mut().zip(x).zip(carry) {
+                            let (v, over) = s.overflowing_add(u128::from(d) * u128::from(x));
+                            *s = v;
+                            *c += u32::from(over);
+                        }
+                    } else {
+                        for (s, &x) in sum.iter_mut().zip(x) {
+                            *s += u128::from(d) * u128::from(x);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The solution, if the window proves |Nⱼ| small enough; its digits are still to be given.
+    /// The error names a component for which it does not.
+    fn proves(&mut self, p: &Int, d: &Int, norm: u64) -> Result<Solution, usize> {
+        let (width, low) = (self.sums.len(), self.low);
+        let size = p.pow(width as u32);
+        // Below the window lie at most low·(p−1)² at each digit: a carry of at most low·p.
+        let error = p * &Int::from(low as u64);
+        let limit = size.bits().saturating_sub(norm + 6);
+        let n = self.sums.first().map_or(0, Vec::len);
+        let mut window = Vec::with_capacity(n);
+        for j in 0..n {
+            let mut v = Int::zero();
+            for t in (0..width).rev() {
+                v = &v * p + from_u128(self.sums[t][j]);
+                if let Some(c) = self.carries.get(t) {
+                    v += &Int::from(u64::from(c[j])).shl(128);
+                }
+            }
+            let v = nearest(&v, &size);
+            if v.bits().max(error.bits()) + 1 > limit {
+                return Err(j);
+            }
+            window.push(v);
+        }
+        let below = p.pow(low as u32);
+        let denominator_high = d.div_rem_floor(&below).0;
+        let ((a, e), (b, f)) = (mantissa(&below), mantissa(d));
+        Ok(Solution {
+            prime: p.to_i64().unwrap_or(0) as u64,
+            p: p.clone(),
+            digits: Vec::new(),
+            denominator: d.clone(),
+            denominator_digits: std::mem::take(&mut self.denominator),
+            low,
+            window,
+            error,
+            denominator_high,
+            unit: (a / b, e - f),
+            norm,
+        })
     }
 }
 
@@ -415,75 +582,13 @@ pub(crate) struct Solution {
     error: Int,
     /// ⌊D/p^low⌋.
     denominator_high: Int,
+    /// p^low/D as a double and an exponent: D/p^low itself may be less than one.
+    unit: (f64, i64),
     /// Bits of any Σ|a| or constant that the tests below may be asked about.
     norm: u64,
 }
 
 impl Solution {
-    /// Windows of the top `width` of `count` digits, if they prove |Nⱼ| small enough.
-    fn new(
-        p: &Int,
-        digits: &[Vec<u64>],
-        d: &Int,
-        count: usize,
-        width: usize,
-        norm: u64,
-    ) -> Option<Solution> {
-        let n = digits.first().map_or(0, Vec::len);
-        let low = count - width;
-        let d_digits: Vec<u64> = digits_of(d, p).into_iter().map(|v| v as u64).collect();
-        let mut sums = vec![vec![0u128; n]; width];
-        let mut carries = vec![vec![0u32; n]; if d_digits.len() > 8000 { width } else { 0 }];
-        for (t, sum) in sums.iter_mut().enumerate() {
-            for (i, &d) in d_digits.iter().enumerate().take(low + t + 1) {
-                let x = &digits[low + t - i];
-                if carries.is_empty() {
-                    for (s, &x) in sum.iter_mut().zip(x) {
-                        *s += u128::from(d) * u128::from(x);
-                    }
-                } else {
-                    for ((s, &x), c) in sum.iter_mut().zip(x).zip(&mut carries[t]) {
-                        let (v, over) = s.overflowing_add(u128::from(d) * u128::from(x));
-                        *s = v;
-                        *c += u32::from(over);
-                    }
-                }
-            }
-        }
-        let size = p.pow(width as u32);
-        // Below the window lie at most low·(p−1)² at each digit: a carry of at most low·p.
-        let error = p * &Int::from(low as u64);
-        let limit = size.bits().checked_sub(norm + 6)?;
-        let mut window = Vec::with_capacity(n);
-        for j in 0..n {
-            let mut v = Int::zero();
-            for t in (0..width).rev() {
-                v = &v * p + from_u128(sums[t][j]);
-                if let Some(c) = carries.get(t) {
-                    v += &Int::from(u64::from(c[j])).shl(128);
-                }
-            }
-            let v = nearest(&v, &size);
-            if v.bits().max(error.bits()) + 1 > limit {
-                return None;
-            }
-            window.push(v);
-        }
-        let denominator_high = d.div_rem_floor(&p.pow(low as u32)).0;
-        Some(Solution {
-            prime: p.to_i64()? as u64,
-            p: p.clone(),
-            digits: Vec::new(),
-            denominator: d.clone(),
-            denominator_digits: d_digits,
-            low,
-            window,
-            error,
-            denominator_high,
-            norm,
-        })
-    }
-
     /// The solution of an empty system.
     pub(crate) fn empty() -> Solution {
         let p = Prime::nth(0).p;
@@ -497,6 +602,7 @@ impl Solution {
             window: Vec::new(),
             error: Int::zero(),
             denominator_high: Int::one(),
+            unit: (1.0, 0),
             norm: 0,
         }
     }
@@ -639,8 +745,14 @@ impl Solution {
         nearest(&(&u * &self.denominator), &modulus)
     }
 
-    /// Σ a·x − c as a double times a power of two, for proposals.
+    /// Σ a·x − c as a double, for proposals.
     pub(crate) fn approximate(&self, terms: &[(u32, Int)], constant: &Int) -> f64 {
+        let (value, e) = self.scaled(terms, constant);
+        ldexp(value, e)
+    }
+
+    /// The same as a double and an exponent of two, which may lie past the double range.
+    pub(crate) fn scaled(&self, terms: &[(u32, Int)], constant: &Int) -> (f64, i64) {
         let (value, _) = self.estimate(terms, constant);
         let value = if value.is_zero() || self.low == 0 {
             value
@@ -648,11 +760,9 @@ impl Solution {
             value.shl(64)
         };
         let (v, e) = mantissa(&value);
-        // D/p^low may be small or even zero as an integer: take it from D itself.
-        let (d, f) = mantissa(&self.denominator);
-        let (u, g) = mantissa(&self.p.pow(self.low as u32));
+        let (unit, f) = self.unit;
         let shift = if self.low == 0 { 0 } else { 64 };
-        ldexp(v / d * u, e + g - f - shift)
+        (v * unit, e + f - shift)
     }
 }
 

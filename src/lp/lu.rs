@@ -362,6 +362,11 @@ fn find_pivot<F: Field>(
 }
 
 impl Lu<f64> {
+    /// log₂ of the determinant's size.
+    pub(crate) fn log2_determinant(&self) -> f64 {
+        self.diagonal.iter().map(|d| d.abs().log2()).sum()
+    }
+
     /// Solves A·x = b in place: `b` by rows becomes x by columns. `work` is scratch.
     pub(crate) fn solve(&self, b: &mut [f64], work: &mut Vec<f64>) {
         let n = self.diagonal.len();

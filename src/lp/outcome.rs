@@ -226,6 +226,8 @@ impl Outcome {
 
 /// Bits of vectors up to which a certificate carries them.
 pub(crate) const VECTOR_BITS: u64 = 4_000_000;
+/// Bits of sums of a row's or a column's sizes up to which a basis alone can be checked.
+const BASIS_BITS: u64 = 2000;
 
 /// Turns the exact method's verdict into a result in the model's terms.
 pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) -> Outcome {
@@ -261,8 +263,7 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
             out.objective = Some(objective);
             let lengths = frame.kernel.size() as u64
                 * (values.solution.denominator.bits() + duals.solution.denominator.bits());
-            // The short form is checked in single words.
-            let vectors = lengths <= VECTOR_BITS || p.columns.limbs > 1;
+            let vectors = lengths <= VECTOR_BITS || p.sum_bits > BASIS_BITS;
             if want_values || vectors {
                 let primal = point(frame, values);
                 let dual = prices(frame, duals, &p.cost_scale);
@@ -378,8 +379,8 @@ fn near(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vec<f64> {
     (0..p.n)
         .map(|j| {
             let v = if frame.basis.status[j] == Resting::Basic {
-                let v = values.approximate(&values.component(frame, j));
-                super::lift::ldexp(v / scale, -exponent)
+                let (v, e) = values.scaled(&values.component(frame, j));
+                super::lift::ldexp(v / scale, e - exponent)
             } else {
                 double(&Rat::new(frame.resting_value(j), p.bound_scale.clone()))
             };

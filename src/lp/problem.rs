@@ -102,6 +102,8 @@ pub(crate) struct Problem {
     pub(crate) cost_scale: Int,
     /// Bits of the largest row or column sum of |entries|, of any bound, of the sum of |costs|.
     pub(crate) norm_bits: u64,
+    /// Bits of the largest row or column sum of |entries| before contents are taken out.
+    pub(crate) sum_bits: u64,
 }
 
 /// Two's-complement words of an integer.
@@ -154,6 +156,8 @@ impl Problem {
         let mut ints: Vec<Vec<(u32, Int)>> = Vec::with_capacity(n);
         let mut column_scale = Vec::with_capacity(n);
         let mut content = vec![Int::zero(); m];
+        let mut sum_bits = 0;
+        let mut row_sum = vec![Int::zero(); m];
         for c in &model.columns {
             let mut column: Vec<(u32, Int)> = c
                 .entries
@@ -168,6 +172,13 @@ impl Problem {
                     (*i, v.numer() * &factor)
                 })
                 .collect();
+            let mut sum = Int::zero();
+            for (i, v) in &column {
+                let size = v.abs();
+                row_sum[*i as usize] += &size;
+                sum += &size;
+            }
+            sum_bits = sum_bits.max(sum.bits());
             let mut g = Int::zero();
             for (_, v) in &column {
                 g = g.gcd(v);
@@ -196,6 +207,7 @@ impl Problem {
             limbs: 1,
             ..Matrix::default()
         };
+        sum_bits = row_sum.iter().fold(sum_bits, |b, s| b.max(s.bits()));
         let mut row_sum = vec![Int::zero(); m];
         let mut norm_bits = 1;
         for column in &mut ints {
@@ -302,6 +314,7 @@ impl Problem {
             bound_scale,
             cost_scale,
             norm_bits,
+            sum_bits,
         })
     }
 

@@ -31,7 +31,9 @@ pub fn to_json(model: &Model, file: &str, outcome: &Outcome) -> Value {
         "certificate": outcome.certificate.as_ref().map(|c| certificate(model, c)),
     });
     if let Some(map) = out.as_object_mut() {
-        if outcome.accuracy == "float"
+        // A feasible point's objective is not the optimum's.
+        let loose = matches!(outcome.certificate, Some(Certificate::Bounds { .. }));
+        if (outcome.accuracy == "float" || loose)
             && let Some(Value::Object(objective)) = map.get_mut("objective")
         {
             objective.remove("exact");
@@ -126,7 +128,7 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
     let rational = |v: &Value| -> Result<Option<Rat>, String> {
         match v {
             Value::Null => Ok(None),
-            Value::String(s) => parse(s).map(Some),
+            Value::String(s) => self::rational(s).map(Some),
             _ => Err("a rational is a string".into()),
         }
     };
@@ -192,7 +194,7 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
 }
 
 /// Long integers pass the literal's limit on digits, which is for people.
-fn parse(s: &str) -> Result<Rat, String> {
+pub(crate) fn rational(s: &str) -> Result<Rat, String> {
     if let Ok(v) = literal::parse(s) {
         return Ok(v);
     }
@@ -240,7 +242,10 @@ impl<'a> Names<'a> {
                 .0
                 .get(name.as_str())
                 .ok_or(format!("unknown name `{name}`"))?;
-            numerators.push((index, parse(n.as_str().ok_or("a numerator is a string")?)?));
+            numerators.push((
+                index,
+                self::rational(n.as_str().ok_or("a numerator is a string")?)?,
+            ));
         }
         numerators.sort_by_key(|e| e.0);
         Ok(Vector {

@@ -119,14 +119,24 @@ impl Known {
         (a - b).abs() <= &size * &Rat::frac(GAP.0, GAP.1)
     }
 
-    /// Writes the enclosure and its proof into an outcome; one that is closed is optimal.
-    pub(crate) fn publish(self, model: &Model, out: &mut Outcome) {
-        if self.closed() {
+    /// Writes the enclosure and its proof into an outcome. It is optimal where the ends are one,
+    /// or where an enclosure is all that was `asked` for and it is closed.
+    pub(crate) fn publish(self, model: &Model, asked: bool, out: &mut Outcome) {
+        if self.primal.is_none() && self.dual.is_none() {
+            return;
+        }
+        let met = matches!((&self.primal, &self.dual), (Some((_, a)), Some((_, b))) if a == b);
+        if met || asked && self.closed() {
             out.status = Status::Optimal;
             out.reason = None;
             out.objective = self.primal.as_ref().map(|p| p.1.clone());
         }
-        if self.primal.is_none() && self.dual.is_none() {
+        if met && let (Some((primal, value)), Some((dual, _))) = (&self.primal, &self.dual) {
+            out.enclosure = (Some(value.clone()), Some(value.clone()));
+            out.certificate = Some(Certificate::Optimal {
+                primal: primal.clone(),
+                dual: dual.clone(),
+            });
             return;
         }
         let (above, below) = (

@@ -117,7 +117,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         known.guess(model, &guess.0, &guess.1);
         if known.closed() {
             let mut out = Outcome::undecided("");
-            known.publish(model, &mut out);
+            known.publish(model, true, &mut out);
             out.float_iterations = iterations;
             out.near = guess.0;
             return out;
@@ -165,7 +165,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
             if !known.closed() {
                 known.guess(model, &guess.0, &guess.1);
             }
-            known.publish(model, &mut out);
+            known.publish(model, options.accuracy == Accuracy::Bounds, &mut out);
             out
         }
     };

@@ -482,17 +482,17 @@ pub(super) fn group<K: Kernel>(
     arc: ArcId,
     t: &K::Time,
 ) -> Vec<ArcId> {
-    let mut ids: Vec<ArcId> = sight
-        .twins(arc)
-        .iter()
-        .copied()
-        .filter(|&b| {
-            b == arc
-                || (slice.arc(b).is_barrier()
-                    && slice.coincide(arc, b)
-                    && slice.alive_after(slice.arc(b), t))
-        })
-        .collect();
+    let span = slice.arc(arc).x_span;
+    let holds = |&b: &ArcId| {
+        let other = slice.arc(b);
+        // Cheapest first: most arcs are elsewhere, and nothing exact is made to see it.
+        b == arc
+            || (other.is_barrier()
+                && other.x_span.meets(&span)
+                && slice.alive_after(other, t)
+                && slice.coincide(arc, b))
+    };
+    let mut ids: Vec<ArcId> = sight.twins(arc).iter().copied().filter(holds).collect();
     ids.sort_by_key(|&b| slice.arc(b).contact);
     ids
 }

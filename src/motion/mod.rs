@@ -21,20 +21,26 @@
 //! [`friction`] says where a contact sticks (DP §6, §7), [`phase`] runs one pawl through one
 //! phase by the rules in `local`, asking a `sight` which arcs may matter: all of them (the simple
 //! algorithm) or those on F's boundary (the `sweep`). [`ledger`] counts, [`root`] finds the root's
-//! collision, [`plan`] strings phases together, [`trajectory`] holds what comes out.
+//! collision, [`solids`] holds the obstacles for it, [`plan`] strings phases together, `replay` starts anew on a slice that is there, [`trajectory`] holds what comes out.
 
+mod beside;
+mod close;
+mod enter;
 pub mod friction;
 pub mod ledger;
 mod local;
 pub mod phase;
 pub mod plan;
+mod replay;
 pub mod root;
 mod sight;
+pub mod solids;
+mod start;
 mod sweep;
 pub mod trajectory;
 
 pub use ledger::Ledger;
-pub use phase::Method;
+pub use phase::{Method, Run, SWEEP_FROM};
 pub use plan::{Arithmetic, Options, PlanError, Seen, simulate, slices};
 pub use trajectory::{
     Angle, Branch, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,

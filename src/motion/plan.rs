@@ -2,7 +2,8 @@
 
 use super::ledger::{Ledger, PhaseCost};
 use super::phase::{Method, Run, Setting, run};
-use super::root::{first_collision, obstacle_polygon};
+use super::root::first_collision;
+use super::solids::Solids;
 use super::trajectory::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
     Trajectory,
@@ -16,6 +17,7 @@ use crate::number::filter::{counts, reset_bits, with_filter};
 use crate::number::{Rat, Scalar};
 use crate::scene::{Motion, Scene};
 use crate::slice::{Free, Slice};
+use std::rc::Rc;
 use std::time::Instant;
 
 /// How a simulation is to run.
@@ -29,6 +31,8 @@ pub struct Options<'a> {
     pub arithmetic: Arithmetic,
     /// Which algorithm runs.
     pub method: Method,
+    /// The way to F, where the sweep runs.
+    pub face: crate::face::Method,
 }
 
 /// Which numbers decide.
@@ -135,9 +139,9 @@ pub struct Seen<K: Kernel = Filtered> {
     /// Index of the pawl.
     pub pawl: usize,
     /// The slice.
-    pub slice: Slice<K>,
+    pub slice: Rc<Slice<K>>,
     /// F, where the sweep ran and the pawl had an interval to be in.
-    pub free: Option<std::rc::Rc<Free>>,
+    pub free: Option<Rc<Free>>,
     /// The pawl's orientation at the start of the phase.
     pub start: Angle<K>,
 }
@@ -156,6 +160,7 @@ pub fn slices(
         progress: options.progress,
         arithmetic: Arithmetic::Filtered,
         method: Method::Sweep,
+        face: options.face,
     };
     simulate_with::<Filtered>(scene, &options, see)
 }
@@ -171,7 +176,7 @@ fn simulate_with<K: Kernel>(
     let mut ledger = Ledger::default();
     let obstacles: Vec<ObstacleShape<K::Num>> =
         scene.obstacles.iter().map(ObstacleShape::new).collect();
-    let fixed: Vec<Polygon> = scene.obstacles.iter().map(obstacle_polygon).collect();
+    let fixed = Solids::new(&scene.obstacles);
     let shapes: Vec<PawlShape<K::Num>> = scene.pawls.iter().map(PawlShape::new).collect();
     let turning: Vec<Polygon> = scene
         .pawls
@@ -198,6 +203,9 @@ fn simulate_with<K: Kernel>(
     let mut offset = Vec2::default();
     let mut clock = Rat::zero();
     let mut before: Option<(Vec2, Rat)> = None;
+    // Each pawl's slice of the phase before, with F, where the next phase runs it backwards.
+    let mut kept: Vec<Option<Kept<K>>> = Vec::new();
+    kept.resize_with(scene.pawls.len(), || None);
     let stop = || options.deadline.is_some_and(|d| Instant::now() >= d);
     for (index, motion) in scene.motions.iter().enumerate() {
         let plan = schedule(scene, index, motion, &offset, before.as_ref())?;
@@ -222,7 +230,16 @@ fn simulate_with<K: Kernel>(
                 duration: num(&plan.duration),
             };
             let limits = pawl.limits.as_ref().map(|(lo, hi)| (num(lo), num(hi)));
-            let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
+            let turned = kept[i].take().and_then(|(slice, free)| {
+                let slice = Rc::new(slice.reversed(limits.as_ref())?);
+                let free = free.and_then(|f| f.reversed(&slice)).map(Rc::new);
+                Some((slice, free))
+            });
+            cost.slices += u64::from(turned.is_none());
+            let (slice, known) = turned.unwrap_or_else(|| {
+                let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
+                (Rc::new(slice), None)
+            });
             cost.build += clock.elapsed().as_secs_f64();
             cost.arcs += slice.arcs().len() as u64;
             if let Some(report) = options.progress {
@@ -243,12 +260,18 @@ fn simulate_with<K: Kernel>(
                 probe: plan.collision.as_ref().map(|c| &c.0),
                 stop: &stop,
                 method: options.method,
-                known: None,
+                known,
+                face: options.face,
             };
             let clock = Instant::now();
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
             cost.run += clock.elapsed().as_secs_f64();
             if let Some(r) = runs.last() {
+                let next = scene.motions.get(index + 1);
+                if r.method == Method::Sweep && matches!(next, Some(Motion::Reverse)) {
+                    kept[i] = Some((slice.clone(), r.free.clone()));
+                }
+                cost.faces.add(&r.faces);
                 cost.swept += u64::from(r.method == Method::Sweep);
                 cost.half_edges += r.free.as_ref().map_or(0, |f| f.half_edges() as u64);
                 see(Seen {
@@ -343,6 +366,9 @@ fn simulate_with<K: Kernel>(
         ledger,
     })
 }
+
+/// A slice and F, where it was made.
+type Kept<K> = (Rc<Slice<K>>, Option<Rc<Free>>);
 
 /// One phase with its duration known.
 struct Schedule {

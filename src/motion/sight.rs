@@ -9,10 +9,11 @@
 
 use super::local::State;
 use crate::contact::Chart;
-use crate::kernel::{Kernel, Position};
-use crate::number::Scalar;
+use crate::kernel::{Instant, Kernel, Position};
+use crate::number::{Interval, Scalar};
 use crate::slice::{ArcId, Point, Shape, Slice};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// Candidates, in ascending order of arc.
 pub(super) type Arcs<'s> = Cow<'s, [ArcId]>;
@@ -50,26 +51,61 @@ pub(super) trait Sight<K: Kernel> {
 /// Every arc there is.
 pub(super) struct All<'a, K: Kernel> {
     slice: &'a Slice<K>,
-    /// When rest is touched, ascending.
-    touches: Vec<K::Time>,
+    touches: Vec<Touch<K>>,
+}
+
+/// An arc that touches rest: when, and what encloses that. Ascending by time where numbers are compared as they
+/// are, by lower ends where enclosures come first: then most times are never made.
+struct Touch<K: Kernel> {
+    rough: Interval,
+    arc: ArcId,
+    time: OnceCell<K::Time>,
 }
 
 impl<'a, K: Kernel> All<'a, K> {
     pub(super) fn new(slice: &'a Slice<K>) -> All<'a, K> {
         let zero = K::Root::of(K::Num::zero());
-        let mut touches = Vec::new();
+        let mut all = All {
+            slice,
+            touches: Vec::new(),
+        };
         for &id in slice.arcs_in(Chart::Rest) {
             let arc = slice.arc(id);
             if arc.is_barrier() && arc.spans_x(&zero) {
-                touches.push(match arc.shape {
-                    Shape::Graph { .. } => slice.time_at(arc, &zero),
-                    _ => arc.lo.t.clone(),
-                });
+                let mut touch = Touch {
+                    rough: arc.rest_span(),
+                    arc: id,
+                    time: OnceCell::new(),
+                };
+                if !(K::ENCLOSES && touch.rough.is_finite()) {
+                    touch.rough = all.time(&touch).interval();
+                }
+                all.touches.push(touch);
             }
         }
-        touches.sort();
-        touches.dedup();
-        All { slice, touches }
+        if K::ENCLOSES {
+            all.touches
+                .sort_by(|a, b| a.rough.lo.total_cmp(&b.rough.lo));
+        } else {
+            let mut touches = std::mem::take(&mut all.touches);
+            touches.sort_by(|a, b| all.time(a).cmp(all.time(b)));
+            touches.dedup_by(|b, a| all.time(a) == all.time(b));
+            all.touches = touches;
+        }
+        all
+    }
+
+    fn time<'t>(&self, touch: &'t Touch<K>) -> &'t K::Time {
+        touch.time.get_or_init(|| {
+            let arc = self.slice.arc(touch.arc);
+            match arc.shape {
+                Shape::Graph { .. } => {
+                    let zero = K::Root::of(K::Num::zero());
+                    self.slice.time_at(arc, &zero)
+                }
+                _ => arc.lo.t.clone(),
+            }
+        })
     }
 }
 
@@ -87,8 +123,25 @@ impl<K: Kernel> Sight<K> for All<'_, K> {
         Cow::Borrowed(self.slice.arcs_in(self.slice.arc(arc).chart))
     }
     fn next_touch(&self, after: &K::Time) -> Option<K::Time> {
-        let i = self.touches.partition_point(|t| t <= after);
-        self.touches.get(i).cloned()
+        if !K::ENCLOSES {
+            let i = self.touches.partition_point(|t| self.time(t) <= after);
+            return self.touches.get(i).map(|t| self.time(t).clone());
+        }
+        let past = after.interval();
+        let mut next: Option<&K::Time> = None;
+        for touch in &self.touches {
+            if next.is_some_and(|n| n.interval().below(&touch.rough)) {
+                break;
+            }
+            if touch.rough.below(&past) {
+                continue;
+            }
+            let t = self.time(touch);
+            if t > after && next.is_none_or(|n| t < n) {
+                next = Some(t);
+            }
+        }
+        next.cloned()
     }
     fn entered(&self, _: State, _: &K::Time) -> bool {
         true

@@ -206,13 +206,39 @@ impl<K: Kernel> Sight<K> for Sweep<'_, K> {
         let when = t.interval();
         let mut out = Vec::new();
         let span = [lo + moved - slack, hi + moved + slack];
+        let mut near: Vec<(ArcId, u32)> = Vec::new();
         self.free.edges_near(span, [when.lo, when.hi], |e| {
             if let Owner::Arc(a) = self.free.edges()[e as usize].owner
                 && self.slice.arc(a).chart == chart
             {
-                out.push(a);
+                near.push((a, e));
             }
         });
+        if let Some(x) = x {
+            // What certainly stands in the way hides all that certainly lies behind it: enclosures alone tell.
+            let i = x.interval();
+            let (from, to) = if dir < 0 {
+                (lo + moved + slack, i.lo + moved - slack)
+            } else {
+                (i.hi + moved + slack, hi + moved - slack)
+            };
+            let edge = |e: u32| &self.free.edges()[e as usize];
+            let t_of = |v: u32| self.free.vertices()[v as usize].t;
+            let sure = near.iter().map(|n| edge(n.1)).filter(|e| {
+                from < e.bounds[0]
+                    && e.bounds[1] < to
+                    && t_of(e.first())[1] < when.lo
+                    && when.hi < t_of(e.last())[0]
+            });
+            if dir < 0 {
+                let floor = sure.fold(f64::NEG_INFINITY, |f, e| f.max(e.bounds[0]));
+                near.retain(|n| edge(n.1).bounds[1] >= floor);
+            } else {
+                let ceiling = sure.fold(f64::INFINITY, |f, e| f.min(e.bounds[1]));
+                near.retain(|n| edge(n.1).bounds[0] <= ceiling);
+            }
+        }
+        out.extend(near.iter().map(|n| n.0));
         if chart == Chart::Rest && lo <= -1.0 {
             // A level on the cut is met from below at the strip's other border.
             self.free

@@ -186,10 +186,41 @@ pub(crate) fn pow2(k: i32) -> f64 {
     }
 }
 
+/// A little more than half a unit in the last place of a finite double: added to it, or taken from it, it
+/// gives a neighbour.
+#[inline]
+fn unit(x: f64) -> f64 {
+    const HALF: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
+    x.abs() * HALF + 5e-324
+}
+
+#[inline]
+fn lesser(x: f64, y: f64) -> f64 {
+    if x < y { x } else { y }
+}
+#[inline]
+fn greater(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
+/// The ends' sums without a branch, where nothing overflows; an exact one is not widened.
+#[inline]
+fn sum(a: f64, b: f64, c: f64, d: f64) -> Option<Interval> {
+    let ((s, e), (t, f)) = (two_sum(a, c), two_sum(b, d));
+    let finite = s.abs() < f64::INFINITY && t.abs() < f64::INFINITY;
+    finite.then(|| Interval {
+        lo: s - if e < 0.0 { unit(s) } else { 0.0 },
+        hi: t + if f > 0.0 { unit(t) } else { 0.0 },
+    })
+}
+
 impl Add for Interval {
     type Output = Interval;
     #[inline]
     fn add(self, o: Interval) -> Interval {
+        if let Some(s) = sum(self.lo, self.hi, o.lo, o.hi) {
+            return s;
+        }
         Interval::guard(sum_down(self.lo, o.lo), sum_up(self.hi, o.hi))
     }
 }
@@ -197,13 +228,36 @@ impl Sub for Interval {
     type Output = Interval;
     #[inline]
     fn sub(self, o: Interval) -> Interval {
+        if let Some(s) = sum(self.lo, self.hi, -o.hi, -o.lo) {
+            return s;
+        }
         Interval::guard(sum_down(self.lo, -o.hi), sum_up(self.hi, -o.lo))
     }
 }
 impl Mul for Interval {
     type Output = Interval;
+    /// The extremes of the four products of ends, without a branch on signs; zero, infinite ends and
+    /// overflow go the long way.
     #[inline]
     fn mul(self, o: Interval) -> Interval {
+        let (a, b, c, d) = (self.lo, self.hi, o.lo, o.hi);
+        let (p, q, r, s) = (a * c, a * d, b * c, b * d);
+        let zero = (a == 0.0 && b == 0.0) || (c == 0.0 && d == 0.0);
+        if (p.abs() + q.abs()) + (r.abs() + s.abs()) < f64::INFINITY && !zero {
+            let lo = lesser(lesser(p, q), lesser(r, s));
+            let hi = greater(greater(p, q), greater(r, s));
+            return Interval {
+                lo: lo - unit(lo),
+                hi: hi + unit(hi),
+            };
+        }
+        self.product(o)
+    }
+}
+
+impl Interval {
+    /// The product by cases.
+    fn product(self, o: Interval) -> Interval {
         let (a, b, c, d) = (self.lo, self.hi, o.lo, o.hi);
         if a >= 0.0 {
             if c >= 0.0 {

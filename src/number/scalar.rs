@@ -10,6 +10,8 @@ use std::hash::Hash;
 pub trait Scalar: Clone + Debug + Default + Ord + Hash + 'static {
     /// Whether arithmetic is exact.
     const EXACT: bool;
+    /// Whether a value is no number but an enclosure of one.
+    const ROUGH: bool = false;
     /// The number nearest to a rational; the rational itself where numbers are exact.
     fn from_rat(r: &Rat) -> Self;
     /// The number itself as a rational.
@@ -145,6 +147,7 @@ impl Hash for Enclosed {
 
 impl Scalar for Enclosed {
     const EXACT: bool = false;
+    const ROUGH: bool = true;
     fn from_rat(r: &Rat) -> Enclosed {
         Enclosed(r.interval())
     }

@@ -7,7 +7,7 @@ use super::ledger::LedgerDocument;
 use super::num::{Num, Numbers, Orientation};
 use crate::contact::{Contact, ContactKind};
 use crate::motion::trajectory::Sliding;
-use crate::motion::{self, OutcomeKind, RootContact, Trajectory};
+use crate::motion::{self, Method, OutcomeKind, RootContact, Trajectory};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
 use schemars::generate::SchemaSettings;
@@ -270,8 +270,8 @@ pub struct CurveDocument {
 pub struct Provenance {
     /// Which arithmetic decided.
     pub arithmetic: &'static str,
-    /// Which algorithm ran.
-    pub method: &'static str,
+    /// Which algorithm was asked for: where the choice was open, the result names the one that ran.
+    pub method: Method,
 }
 
 impl ResultDocument {
@@ -285,7 +285,7 @@ impl ResultDocument {
             schema: "snapfit.result/1",
             scene: scene.name.clone(),
             arithmetic: how.arithmetic,
-            method: how.method,
+            method: trajectory.ledger.ran(how.method).name(),
             backend: crate::number::backend().name(),
             phases: trajectory
                 .phases
@@ -338,6 +338,27 @@ pub fn result_schema() -> Schema {
 pub(super) fn named_contact(scene: &Scene, contact: &Contact) -> ContactDocument {
     let numbers = Numbers::new(&[]);
     Writer { scene, numbers }.contact(contact)
+}
+
+/// The events and segments of one run through a phase, times counted from its start.
+pub(super) fn run_documents(
+    scene: &Scene,
+    phase: usize,
+    run: &motion::Run,
+) -> (Vec<EventDocument>, Vec<SegmentDocument>) {
+    let zero = motion::Phase {
+        from: Rat::zero(),
+        to: Rat::zero().into(),
+        offset: Default::default(),
+        velocity: Default::default(),
+    };
+    let phases = vec![zero; phase + 1];
+    let numbers = Numbers::new(&phases);
+    let mut writer = Writer { scene, numbers };
+    (
+        run.events.iter().map(|e| writer.event(e)).collect(),
+        run.segments.iter().map(|s| writer.segment(s)).collect(),
+    )
 }
 
 struct Writer<'a> {

@@ -50,6 +50,18 @@ pub struct PhaseCostDocument {
     pub swept: u64,
     /// Half-edges of the free components that were made.
     pub half_edges: u64,
+    /// Slices built from contacts; a reversed phase turns those of its phase round instead.
+    pub slices: u64,
+    /// Free components found by walking round them.
+    pub walked: u64,
+    /// Free components found by merges.
+    pub merged: u64,
+    /// How many merges that took.
+    pub merges: u64,
+    /// Free components known from another run or phase.
+    pub reused: u64,
+    /// Free components given up because they contradicted the slice; all arcs were looked at from there on.
+    pub abandoned: u64,
     /// Seconds to build the slices; absent where times are left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub build_seconds: Option<f64>,
@@ -79,6 +91,12 @@ impl LedgerDocument {
                     arcs: p.arcs,
                     swept: p.swept,
                     half_edges: p.half_edges,
+                    slices: p.slices,
+                    walked: p.faces.walked,
+                    merged: p.faces.merged,
+                    merges: p.faces.merges,
+                    reused: p.faces.reused,
+                    abandoned: p.faces.abandoned,
                     build_seconds: Some(p.build),
                     run_seconds: Some(p.run),
                 })

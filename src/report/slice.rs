@@ -3,14 +3,18 @@
 //! Vertices, edges and cycles of the free component's boundary, every number exact. Times count from the
 //! start of the phase, as t does in the curves.
 
-use super::json::{ContactDocument, CurveDocument, TanHalf, named_contact};
+use super::json::{
+    ContactDocument, CurveDocument, EventDocument, SegmentDocument, TanHalf, named_contact,
+    run_documents,
+};
 use super::num::{Num, Numbers};
 use crate::motion::friction::regions;
-use crate::motion::{Angle, Seen};
+use crate::motion::{Angle, Method, Seen};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
-use crate::slice::{Configuration, Free, Owner, Shape, Slice, Whereabouts};
-use schemars::JsonSchema;
+use crate::slice::{Configuration, Free, Owner, Shape, Slice, Time, Whereabouts};
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 
 /// A pawl's slice of a phase, and F.
@@ -18,6 +22,7 @@ use serde::Serialize;
 #[schemars(title = "snapfit slice")]
 pub struct SliceDocument {
     /// `snapfit.slice/1`.
+    #[schemars(extend("const" = "snapfit.slice/1"))]
     pub schema: &'static str,
     /// Name of the scene.
     pub scene: String,
@@ -73,12 +78,17 @@ pub struct FreeVertexDocument {
 #[schemars(rename = "FreeEdge")]
 pub struct FreeEdgeDocument {
     /// `contact`, or `start` and `end` for the phase's first and last instant.
+    #[schemars(extend("enum" = ["contact", "start", "end"]))]
     pub kind: &'static str,
     /// The vertex with the smaller θ (where θ is constant: the earlier one).
     pub from: u32,
     /// The other one.
     pub to: u32,
-    /// Where F lies: `above` or `below` in θ, `before` or `after` where t is constant.
+    /// Where F lies: `above` or `below` in θ, `before` or `after` where t is constant; one side or both.
+    #[schemars(
+        length(min = 1, max = 2),
+        inner(regex(pattern = "^(above|below|before|after)$"))
+    )]
     pub free: Vec<&'static str>,
     /// Who touches whom.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,7 +96,8 @@ pub struct FreeEdgeDocument {
     /// The curve that it lies on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curve: Option<CurveDocument>,
-    /// The sign of the radical, as in a result's segments; null where t is constant.
+    /// The sign of the radical, as in a result's segments; left out where t is constant.
+    #[schemars(extend("enum" = ["+", "-"]))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub branch: Option<&'static str>,
     /// Where friction is modelled: where the whole arc sticks and slides in this phase's direction.
@@ -99,6 +110,7 @@ pub struct FreeEdgeDocument {
 #[schemars(rename = "Region")]
 pub struct RegionDocument {
     /// `stick` or `slide`.
+    #[schemars(extend("enum" = ["stick", "slide"]))]
     pub kind: &'static str,
     /// When it begins.
     pub from: Num,
@@ -118,6 +130,7 @@ pub enum QueryDocument {
         /// Orientation.
         tan_half: Num,
         /// `inside`, `boundary` (in contact) or `outside`.
+        #[schemars(extend("enum" = ["inside", "boundary", "outside"]))]
         answer: &'static str,
     },
     /// Which orientations are in F just after a time?
@@ -129,6 +142,39 @@ pub enum QueryDocument {
         /// From each lower end upwards to the upper one; past θ = 3π/2 where that is smaller.
         intervals: Vec<[TanHalf; 2]>,
     },
+    /// How would the pawl move from another orientation at the start of the phase?
+    Run {
+        /// Orientation at the start.
+        from: TanHalf,
+        /// Whether F served for this start too.
+        reused: bool,
+        /// How the run ended, as in a result.
+        #[schemars(extend("enum" = ["completed", "jammed", "stuck", "bifurcated", "undecided"]))]
+        outcome: &'static str,
+        /// When.
+        time: Num,
+        /// In order of time, then of kind.
+        events: Vec<EventDocument>,
+        /// In order of time.
+        segments: Vec<SegmentDocument>,
+    },
+}
+
+/// The JSON Schema of what `snapfit slice` prints (draft 2020-12), as `snapfit schema slice` prints it.
+pub fn slice_schema() -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    let mut schema = settings
+        .into_generator()
+        .into_root_schema_for::<SliceDocument>();
+    schema.insert("$id".to_owned(), "snapfit.slice/1".into());
+    schema
+}
+
+fn time(t: &Time) -> Num {
+    match t.as_rat() {
+        Some(r) => Num::of_rat(r),
+        None => Num::of(t.exact()),
+    }
 }
 
 fn half(numbers: &mut Numbers<'_>, half_turn: i64, x: crate::number::Algebraic) -> (TanHalf, f64) {
@@ -174,6 +220,25 @@ impl SliceDocument {
                 Some(Whereabouts::Boundary) => "boundary",
                 _ => "outside",
             },
+        });
+    }
+
+    /// Asks for the run from another orientation at the start of the phase.
+    pub fn run(&mut self, scene: &Scene, seen: &Seen, u: &Rat) {
+        let start: Angle = Angle::from_tan_half(u);
+        let run = seen.run_from(scene, &start, Method::Sweep);
+        let (events, segments) = run_documents(scene, seen.phase, &run);
+        let (outcome, at) = match &run.end {
+            Some((kind, at, _)) => (kind.name(), at.clone()),
+            None => ("completed", Time::from(seen.slice.frame.duration.clone())),
+        };
+        self.queries.push(QueryDocument::Run {
+            from: half(&mut Numbers::new(&[]), start.half_turn, start.x).0,
+            reused: run.faces.reused > 0,
+            outcome,
+            time: time(&at),
+            events,
+            segments,
         });
     }
 
@@ -226,10 +291,7 @@ impl FreeDocument {
                 contacts.sort();
                 contacts.dedup();
                 FreeVertexDocument {
-                    time: match t.as_rat() {
-                        Some(r) => Num::of_rat(r),
-                        None => Num::of(t.exact()),
-                    },
+                    time: time(&t),
                     tan_half,
                     theta,
                     contacts: contacts.iter().map(|c| named_contact(scene, c)).collect(),
@@ -290,10 +352,6 @@ fn edge(scene: &Scene, slice: &Slice, e: &crate::slice::FreeEdge) -> FreeEdgeDoc
     let regions = match &scene.friction {
         Some(mu) if moves => regions(slice, id, Some(mu)),
         _ => Vec::new(),
-    };
-    let time = |t: &crate::slice::Time| match t.as_rat() {
-        Some(r) => Num::of_rat(r),
-        None => Num::of(t.exact()),
     };
     FreeEdgeDocument {
         kind: "contact",

@@ -1,188 +1,36 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
-use super::{Arc, ArcId, Curve, CurveId, End, Point, Shape, Side};
+use super::arc::Exact;
+use super::names::{Lines, Name, Named, Names};
+use super::shop::Curves;
+use super::valid::{Filter, valid_graph, wedge_ok};
+use super::{Arc, Curve, CurveId, End, Shape, Side};
 use crate::contact::{
-    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Ring, Trig,
-    patches_within,
+    Chart, Cones, Contact, ContactKind, Frame, ObstacleShape, Patch, PawlShape, Trig,
 };
 use crate::geometry::Vec2;
-use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
+use crate::kernel::{Instant, Kernel, Polynomial, Position};
+use crate::number::Scalar;
 use crate::number::filter::{self, Stage};
-use crate::number::{Interval, Scalar};
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::sync::Mutex;
 
-/// The slice of one pawl over one phase: its arcs, and what is known of their crossings.
-#[derive(Debug)]
-pub struct Slice<K: Kernel = Filtered> {
-    /// The phase as the hinge sees it.
-    pub frame: Frame<K::Num>,
-    pub(super) curves: Vec<Curve<K>>,
-    pub(super) arcs: Vec<Arc<K>>,
-    pub(super) by_chart: [Vec<ArcId>; 2],
-    /// The patch that each arc was cut from (none for a limit stop).
-    pub(super) patch_of: Vec<Option<u32>>,
-    pub(super) patches: Vec<Patch<K::Num>>,
-    /// Per curve, the named points that it passes through.
-    pub(super) named: Vec<Vec<super::Point<K>>>,
-    pub(super) crossings: Mutex<super::predicates::CrossCache<K>>,
-}
-
-impl<K: Kernel> Slice<K> {
-    /// Builds the arcs of a pawl against the obstacles over a phase, with its angular stops.
-    ///
-    /// Cost: O(n) patches within reach, each a constant number of quadratics.
-    pub fn new(
-        frame: Frame<K::Num>,
-        pawl: &PawlShape<K::Num>,
-        obstacles: &[ObstacleShape<K::Num>],
-        limits: Option<&(K::Num, K::Num)>,
-    ) -> Slice<K> {
-        let patches = patches_within(&frame, pawl, obstacles);
-        let mut b = Builder::<K>::new(frame, pawl, obstacles);
-        for (i, patch) in patches.iter().enumerate() {
-            b.add(patch, i as u32);
-        }
-        if let Some((lo, hi)) = limits {
-            b.add_limit(lo, 0);
-            b.add_limit(hi, 1);
-        }
-        let mut by_chart = [Vec::new(), Vec::new()];
-        for (i, a) in b.arcs.iter().enumerate() {
-            by_chart[a.chart.index()].push(i as ArcId);
-        }
-        let mut named: Vec<Vec<Point<K>>> = vec![Vec::new(); b.curves.len()];
-        for (curve, chart, n) in &b.through {
-            let known = &mut named[*curve as usize];
-            if let Some(t) = n.t.get()
-                && !known.iter().any(|p| p.x.same(&n.x))
-            {
-                known.push(Point {
-                    chart: *chart,
-                    x: n.x.clone(),
-                    t: t.clone(),
-                    on: vec![*curve],
-                });
-            }
-        }
-        Slice {
-            named,
-            frame: b.frame,
-            curves: b.curves,
-            arcs: b.arcs,
-            by_chart,
-            patch_of: b.patch_of,
-            patches,
-            crossings: Mutex::default(),
-        }
-    }
-    /// All arcs.
-    pub fn arcs(&self) -> &[Arc<K>] {
-        &self.arcs
-    }
-    /// One arc.
-    pub fn arc(&self, id: ArcId) -> &Arc<K> {
-        &self.arcs[id as usize]
-    }
-    /// One curve.
-    pub fn curve(&self, id: CurveId) -> &Curve<K> {
-        &self.curves[id as usize]
-    }
-    /// The arcs of one chart.
-    pub fn arcs_in(&self, chart: Chart) -> &[ArcId] {
-        &self.by_chart[chart.index()]
-    }
-    /// The patch an arc was cut from; None for a limit stop.
-    pub fn patch(&self, id: ArcId) -> Option<&Patch<K::Num>> {
-        self.patch_of[id as usize].map(|i| &self.patches[i as usize])
-    }
-}
-
-/// A point whose name is known: equal names share one handle.
-#[derive(Debug)]
-struct Named<K: Kernel> {
-    x: K::Root,
-    t: std::cell::OnceCell<K::Time>,
-}
-
-/// The points of one name, ascending.
-type Names<K> = Rc<[Rc<Named<K>>]>;
-
-/// The names of points where arcs can end (idea 2: names before numbers).
-#[derive(PartialEq, Eq, Hash)]
-enum Name<R> {
-    /// A pawl vertex on an obstacle vertex, both by their coordinates.
-    VertexVertex(Box<(Vec2<R>, Vec2<R>)>, Chart),
-    /// A pawl edge flush on an obstacle edge, both by their supporting lines.
-    Flush(u32, u32, Chart),
-    /// A vertical tangency of a curve.
-    Tangency(CurveId, Chart),
-}
-
-struct Builder<'a, K: Kernel> {
-    frame: Frame<K::Num>,
-    pawl: &'a PawlShape<K::Num>,
-    obstacles: &'a [ObstacleShape<K::Num>],
-    curves: Vec<Curve<K>>,
+/// Turns patches into arcs, and knows the names of what it has met.
+pub(super) struct Builder<K: Kernel> {
+    pub(super) frame: Frame<K::Num>,
+    pub(super) pawl: PawlShape<K::Num>,
+    pub(super) obstacles: Rc<[ObstacleShape<K::Num>]>,
     curve_ids: HashMap<K::Key, CurveId>,
+    /// Those of the patch at hand.
     arcs: Vec<Arc<K>>,
-    patch_of: Vec<Option<u32>>,
     named: HashMap<Name<K::Num>, Names<K>>,
-    pawl_lines: Lines<'a, K>,
-    obstacle_lines: Lines<'a, K>,
+    pawl_lines: Lines<K>,
+    obstacle_lines: Lines<K>,
     minus_one: K::Num,
     one: K::Num,
     speed2: K::Num,
-    /// Curves and the named points on them.
-    through: Vec<(CurveId, Chart, Rc<Named<K>>)>,
-}
-
-/// Supporting lines (normal, offset) numbered so that collinear edges share a number; each when first asked
-/// for, since most edges of a long obstacle are out of reach.
-struct Lines<'a, K: Kernel> {
-    rings: Vec<&'a Ring<K::Num>>,
-    /// The first edge of each ring, numbered through all of them.
-    first: Vec<u32>,
-    seen: HashMap<K::Key, u32>,
-    of_edge: HashMap<u32, u32>,
-}
-
-impl<'a, K: Kernel> Lines<'a, K> {
-    fn new(rings: impl Iterator<Item = &'a Ring<K::Num>>) -> Lines<'a, K> {
-        let rings: Vec<_> = rings.collect();
-        let mut next = 0;
-        let mut first = Vec::with_capacity(rings.len());
-        for r in &rings {
-            first.push(next);
-            next += r.len() as u32;
-        }
-        Lines {
-            rings,
-            first,
-            seen: HashMap::new(),
-            of_edge: HashMap::new(),
-        }
-    }
-
-    fn number(&mut self, edge: u32) -> u32 {
-        if let Some(&n) = self.of_edge.get(&edge) {
-            return n;
-        }
-        let r = self.first.partition_point(|&f| f <= edge) - 1;
-        let (ring, k) = (self.rings[r], (edge - self.first[r]) as usize);
-        let (n, on) = (&ring.normals[k], &ring.vertices[k]);
-        // Offset first, so that the sign is fixed by the normal alone and orientation stays
-        // out of the name.
-        let line = [n.dot(on), n.x.clone(), n.y.clone()];
-        let next = self.of_edge.len() as u32;
-        let number = match K::primitive(&line) {
-            Some((line, _)) => *self.seen.entry(K::key(&line)).or_insert(next),
-            None => next,
-        };
-        self.of_edge.insert(edge, number);
-        number
-    }
+    /// The named points on each curve, by its id.
+    pub(super) through: Vec<Vec<(Chart, Rc<Named<K>>)>>,
 }
 
 /// One break point of a patch in a chart.
@@ -191,78 +39,6 @@ struct Break<K: Kernel> {
     point: Option<Rc<Named<K>>>,
 }
 
-/// Interval versions of a patch's conditions in one chart, to settle samples without big numbers.
-struct Filter {
-    f0: [Interval; 3],
-    f1: [Interval; 3],
-    wedge: [[Interval; 3]; 2],
-    location: [([Interval; 3], [Interval; 3]); 2],
-}
-
-fn enclose<R: Scalar>(t: &Trig<R>, chart: Chart) -> [Interval; 3] {
-    let f = t.form(chart);
-    [f[0].interval(), f[1].interval(), f[2].interval()]
-}
-
-fn horner(f: &[Interval; 3], x: Interval) -> Interval {
-    (f[2] * x + f[1]) * x + f[0]
-}
-
-impl Filter {
-    fn new<R: Scalar>(p: &Patch<R>, chart: Chart) -> Filter {
-        Filter {
-            f0: enclose(&p.f0, chart),
-            f1: enclose(&p.f1, chart),
-            wedge: [enclose(&p.wedge[0], chart), enclose(&p.wedge[1], chart)],
-            location: [0, 1].map(|k| {
-                (
-                    enclose(&p.location[k].0, chart),
-                    enclose(&p.location[k].1, chart),
-                )
-            }),
-        }
-    }
-    /// Whether the patch is real on its graph at x, where the intervals can tell.
-    fn valid_graph(&self, x: Interval) -> Option<bool> {
-        let mut sure = true;
-        for w in &self.wedge {
-            match horner(w, x).sign() {
-                Some(s) if s < 0 => return Some(false),
-                Some(s) if s > 0 => {}
-                _ => sure = false,
-            }
-        }
-        let (f0, f1) = (horner(&self.f0, x), horner(&self.f1, x));
-        for (l0, l1) in &self.location {
-            match ((horner(l0, x) * f1 - f0 * horner(l1, x)).sign(), f1.sign()) {
-                (Some(a), Some(b)) if a * b < 0 => return Some(false),
-                (Some(a), Some(b)) if a * b > 0 => {}
-                _ => sure = false,
-            }
-        }
-        sure.then_some(true)
-    }
-}
-
-fn wedge_ok<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
-    p.wedge.iter().all(|w| w.value(chart, x).sign() >= 0)
-}
-
-/// Whether the patch is real at position x of its graph, exactly.
-fn valid_graph<R: Scalar>(p: &Patch<R>, chart: Chart, x: &R) -> bool {
-    if !wedge_ok(p, chart, x) {
-        return false;
-    }
-    let (f0, f1) = (p.f0.value(chart, x), p.f1.value(chart, x));
-    let s = f1.sign();
-    p.location.iter().all(|(l0, l1)| {
-        let v = l0.value(chart, x).times(&f1);
-        let v = v.minus(&f0.times(&l1.value(chart, x)));
-        v.sign() * s >= 0
-    })
-}
-
-/// P(u) given in u = tan(θ/2) as a polynomial of a chart's x (multiplied by x² > 0 there).
 fn in_chart<K: Kernel>(c: &[K::Coef; 3], chart: Chart) -> K::Poly {
     K::Poly::of_curve(c, chart == Chart::Back)
 }
@@ -272,12 +48,12 @@ fn poly<K: Kernel>(f: &Trig<K::Num>, chart: Chart) -> K::Poly {
     K::Poly::of(&f.form(chart))
 }
 
-impl<'a, K: Kernel> Builder<'a, K> {
-    fn new(
+impl<K: Kernel> Builder<K> {
+    pub(super) fn new(
         frame: Frame<K::Num>,
-        pawl: &'a PawlShape<K::Num>,
-        obstacles: &'a [ObstacleShape<K::Num>],
-    ) -> Builder<'a, K> {
+        pawl: PawlShape<K::Num>,
+        obstacles: Rc<[ObstacleShape<K::Num>]>,
+    ) -> Builder<K> {
         let pawl_lines = Lines::new(std::iter::once(&pawl.ring));
         let obstacle_lines = Lines::new(obstacles.iter().flat_map(|o| &o.rings));
         let speed2 = frame.v.norm2();
@@ -285,10 +61,8 @@ impl<'a, K: Kernel> Builder<'a, K> {
             frame,
             pawl,
             obstacles,
-            curves: Vec::new(),
             curve_ids: HashMap::new(),
             arcs: Vec::new(),
-            patch_of: Vec::new(),
             named: HashMap::new(),
             pawl_lines,
             obstacle_lines,
@@ -347,7 +121,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
     }
 
     /// The curve of a patch and the sign by which the C-function differs from it.
-    fn curve_of(&mut self, patch: &Patch<K::Num>) -> Option<(CurveId, i32)> {
+    fn curve_of(&mut self, curves: &Curves<K>, patch: &Patch<K::Num>) -> Option<(CurveId, i32)> {
         let p = patch.f0.form(Chart::Rest);
         let q = patch.f1.form(Chart::Rest);
         let all: Vec<K::Num> = p.into_iter().chain(q).collect();
@@ -372,8 +146,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
             (cp.quotient(&g), cq.quotient(&g))
         });
         let [(rp0, rq0), (rp1, rq1)] = pairs;
-        let id = self.curves.len() as CurveId;
-        self.curves.push(Curve {
+        let id = curves.add(Curve {
             p,
             q,
             rp: [rp0, rp1],
@@ -383,45 +156,34 @@ impl<'a, K: Kernel> Builder<'a, K> {
         Some((id, flip))
     }
 
-    fn add(&mut self, patch: &Patch<K::Num>, index: u32) {
-        let Some((curve, flip)) = self.curve_of(patch) else {
-            return; // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
+    /// All arcs of a patch: chart by chart, those along levels first, then ascending.
+    pub(super) fn cut(&mut self, curves: &Curves<K>, patch: &Patch<K::Num>) -> Vec<Arc<K>> {
+        let Some((curve, flip)) = self.curve_of(curves, patch) else {
+            return Vec::new(); // f ≡ 0: the hinge's own vertex runs along the edge; its neighbours bound it
         };
+        let c = curves.get(curve);
         for chart in Chart::BOTH {
             if !patch.charts[chart.index()] {
                 continue;
             }
-            let c = &self.curves[curve as usize];
             let (p, q) = (in_chart::<K>(&c.p, chart), in_chart::<K>(&c.q, chart));
-            let (rp, rq) = (c.rp[chart.index()].clone(), c.rq[chart.index()].clone());
-            let before = self.arcs.len();
+            let (rp, rq) = c.reduced(chart);
             if q.is_zero() {
                 self.add_levels(patch, curve, flip, chart, &p, None);
+                continue;
+            }
+            let flat = rp.degree().unwrap_or(0) == 0 && rq.degree() == Some(0);
+            if rq.degree() < q.degree() || rp.degree() < p.degree() {
+                let g = if p.is_zero() { q.clone() } else { p.common(&q) };
+                self.add_levels(patch, curve, flip, chart, &g, Some((rp, rq)));
+            }
+            if flat {
+                self.add_wall(patch, curve, chart, rp, rq);
             } else {
-                let flat = rp.degree().unwrap_or(0) == 0 && rq.degree() == Some(0);
-                if rq.degree() < q.degree() || rp.degree() < p.degree() {
-                    let g = if p.is_zero() { q.clone() } else { p.common(&q) };
-                    self.add_levels(patch, curve, flip, chart, &g, Some((&rp, &rq)));
-                }
-                if flat {
-                    self.add_wall(patch, curve, chart, &rp, &rq);
-                } else {
-                    self.add_graph(patch, curve, flip, chart, (&p, &q), (&rp, &rq));
-                }
+                self.add_graph(patch, curve, flip, chart, (&p, &q), (rp, rq));
             }
-            // What lies wholly before the phase or wholly after it can never be met.
-            let end = Scalar::interval(&self.frame.duration).hi;
-            let mut i = before;
-            while i < self.arcs.len() {
-                let s = self.arcs[i].t_span;
-                if s.hi < 0.0 || s.lo > end {
-                    self.arcs.swap_remove(i);
-                } else {
-                    i += 1;
-                }
-            }
-            self.patch_of.resize(self.arcs.len(), Some(index));
         }
+        std::mem::take(&mut self.arcs)
     }
 
     fn wedge_breaks(&mut self, patch: &Patch<K::Num>, chart: Chart, out: &mut Vec<Break<K>>) {
@@ -483,8 +245,15 @@ impl<'a, K: Kernel> Builder<'a, K> {
         // A name may lie on the curve's level instead, at another time.
         let factored = rq.degree() != q.degree() || rp.degree() != p.degree();
         if !factored && K::names() {
-            let points = breaks.iter().filter_map(|b| b.point.clone());
-            self.through.extend(points.map(|n| (curve, chart, n)));
+            if self.through.len() <= curve as usize {
+                self.through.resize_with(curve as usize + 1, Vec::new);
+            }
+            let known = &mut self.through[curve as usize];
+            for n in breaks.iter().filter_map(|b| b.point.as_ref()) {
+                if !known.iter().any(|(_, o)| o.x.same(&n.x)) {
+                    known.push((chart, n.clone()));
+                }
+            }
         }
         // dt/dx = −(P'Q − PQ')/Q².
         let bend = rp.derivative().times(rq).minus(&rp.times(&rq.derivative()));
@@ -530,23 +299,20 @@ impl<'a, K: Kernel> Builder<'a, K> {
                 };
                 End { x: b.x.clone(), t }
             };
-            self.arcs.push(
-                Arc {
-                    contact: patch.contact,
-                    chart,
+            self.arcs.push(Arc::made(
+                patch.contact,
+                chart,
+                Shape::Graph {
+                    rising: bend_sign < 0,
+                },
+                if up > 0 { Side::Above } else { Side::Below },
+                Exact {
                     curve,
                     branch: up * flip,
-                    shape: Shape::Graph {
-                        rising: bend_sign < 0,
-                    },
-                    side: if up > 0 { Side::Above } else { Side::Below },
                     lo: end(&w[0]),
                     hi: end(&w[1]),
-                    t_span: Interval::all(),
-                    x_span: Interval::all(),
-                }
-                .with_spans(),
-            );
+                },
+            ));
         }
     }
 
@@ -639,21 +405,18 @@ impl<'a, K: Kernel> Builder<'a, K> {
                         if bend > 0 { Side::Both } else { Side::Neither }
                     }
                 };
-                self.arcs.push(
-                    Arc {
-                        contact: patch.contact,
-                        chart,
+                self.arcs.push(Arc::made(
+                    patch.contact,
+                    chart,
+                    Shape::Level,
+                    side,
+                    Exact {
                         curve,
-                        branch,
-                        shape: Shape::Level,
-                        side,
+                        branch: branch,
                         lo: w[0].clone(),
                         hi: w[1].clone(),
-                        t_span: Interval::all(),
-                        x_span: Interval::all(),
-                    }
-                    .with_spans(),
-                );
+                    },
+                ));
             }
         }
     }
@@ -709,21 +472,18 @@ impl<'a, K: Kernel> Builder<'a, K> {
                 x: b.x.clone(),
                 t: t.clone(),
             };
-            self.arcs.push(
-                Arc {
-                    contact: patch.contact,
-                    chart,
+            self.arcs.push(Arc::made(
+                patch.contact,
+                chart,
+                Shape::Wall,
+                side,
+                Exact {
                     curve,
                     branch: 0,
-                    shape: Shape::Wall,
-                    side,
                     lo: end(&w[0]),
                     hi: end(&w[1]),
-                    t_span: Interval::all(),
-                    x_span: Interval::all(),
-                }
-                .with_spans(),
-            );
+                },
+            ));
         }
     }
 
@@ -768,7 +528,7 @@ impl<'a, K: Kernel> Builder<'a, K> {
     }
 
     /// An angular stop: a level at u for the whole phase and a little more.
-    fn add_limit(&mut self, u: &K::Num, which: u8) {
+    pub(super) fn limit(&mut self, curves: &Curves<K>, u: &K::Num, which: u8) -> Arc<K> {
         let (chart, x) = if u.abs() <= self.one {
             (Chart::Rest, u.clone())
         } else {
@@ -782,31 +542,22 @@ impl<'a, K: Kernel> Builder<'a, K> {
         };
         let p = K::stop(u);
         let q = [K::zero_coef(), K::zero_coef(), K::zero_coef()];
-        let curve = self.curves.len() as CurveId;
         let rp = Chart::BOTH.map(|c| in_chart::<K>(&p, c));
         let rq = [K::Poly::zero(), K::Poly::zero()];
-        self.curves.push(Curve { p, q, rp, rq });
+        let curve = curves.add(Curve { p, q, rp, rq });
         let x = K::Root::of(x);
         let end = |t: K::Num| End {
             x: x.clone(),
             t: K::Time::of(t),
         };
-        self.arcs.push(
-            Arc {
-                contact: Contact::Limit(which),
-                chart,
-                curve,
-                branch: 1,
-                shape: Shape::Level,
-                side: if which == 0 { Side::Above } else { Side::Below },
-                lo: end(self.minus_one.clone()),
-                hi: end(self.frame.duration.plus(&self.one)),
-                t_span: Interval::all(),
-                x_span: Interval::all(),
-            }
-            .with_spans(),
-        );
-        self.patch_of.push(None);
+        let side = if which == 0 { Side::Above } else { Side::Below };
+        let exact = Exact {
+            curve,
+            branch: 1,
+            lo: end(self.minus_one.clone()),
+            hi: end(self.frame.duration.plus(&self.one)),
+        };
+        Arc::made(Contact::Limit(which), chart, Shape::Level, side, exact)
     }
 }
 

@@ -11,15 +11,23 @@
 //! Algorithms to the right of this module see no coordinates: they ask the [`Slice`] where two
 //! arcs cross, which of two times is earlier, which of two arcs is higher just after a time.
 
+mod annotate;
 mod arc;
+mod assemble;
 mod build;
 mod free;
+mod names;
 mod predicates;
+mod query;
+mod reverse;
+mod scout;
+mod shop;
 mod strip;
+mod valid;
 
 pub use crate::kernel::Time;
-pub use arc::{Arc, ArcId, Curve, CurveId, End, Shape, Side};
-pub use build::Slice;
+pub use arc::{Arc, ArcId, Curve, CurveId, End, Exact, Shape, Side};
 pub use free::{Configuration, Free, FreeEdge, FreeVertex, Interval, Touch, Whereabouts};
 pub use predicates::{Cross, Germs, Point, cmp_horizontal};
+pub use shop::Slice;
 pub use strip::Owner;

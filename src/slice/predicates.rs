@@ -82,16 +82,11 @@ impl<K: Kernel> Slice<K> {
     /// Gives crossings at points that both curves pass through by name the handles of those: such
     /// a point is a crossing, so where only one crossing can be it, it is that one.
     fn name_crossings(&self, (a, b, chart): (CurveId, CurveId, Chart), list: &mut [Cross<K>]) {
-        let theirs = &self.named[b as usize];
-        for p in self.named[a as usize].iter().filter(|p| p.chart == chart) {
-            if !theirs.iter().any(|o| o.x.same(&p.x)) {
-                continue;
-            }
-            let at = p.x.interval();
+        for (x, t) in self.shop.named_on_both(a, b, chart) {
+            let at = x.interval();
             let mut near = list.iter_mut().filter(|c| c.x.interval().meets(&at));
             if let (Some(c), None) = (near.next(), near.next()) {
-                c.x = p.x.clone();
-                c.t = p.t.clone();
+                (c.x, c.t) = (x, t);
             }
         }
     }
@@ -279,11 +274,25 @@ impl<K: Kernel> Slice<K> {
 
     /// Whether an arc exists just after t (walls never do).
     pub fn alive_after(&self, arc: &Arc<K>, t: &K::Time) -> bool {
-        !matches!(arc.shape, Shape::Wall)
-            && arc.t_span.hi >= t.interval().lo
-            && arc.t_span.lo <= t.interval().hi
-            && arc.start().t <= *t
-            && *t < arc.end().t
+        let at = t.interval();
+        if matches!(arc.shape, Shape::Wall) || arc.t_span.hi < at.lo || arc.t_span.lo > at.hi {
+            return false;
+        }
+        let [from, to] = arc.times();
+        if K::ENCLOSES && from.below(&at) && at.below(&to) {
+            filter::settled(Stage::Double);
+            return true;
+        }
+        arc.start().t <= *t && *t < arc.end().t
+    }
+
+    /// Whether an arc is there at a time, its ends included.
+    pub fn alive_at(&self, arc: &Arc<K>, t: &K::Time) -> bool {
+        let at = t.interval();
+        if arc.t_span.hi < at.lo || arc.t_span.lo > at.hi {
+            return false;
+        }
+        arc.start().t <= *t && *t <= arc.end().t
     }
 
     /// The position of an arc just after t against a constant x; `Equal` only for a level there.
@@ -295,22 +304,20 @@ impl<K: Kernel> Slice<K> {
         if arc.x_span.below(&xi) {
             return Ordering::Less;
         }
-        match arc.shape {
-            Shape::Graph { rising } => {
-                if *x <= arc.lo.x {
-                    Ordering::Greater
-                } else if *x >= arc.hi.x {
-                    Ordering::Less
-                } else {
-                    let passed = *t >= self.time_at(arc, x);
-                    if passed == rising {
-                        Ordering::Greater
-                    } else {
-                        Ordering::Less
-                    }
-                }
-            }
-            _ => arc.lo.x.cmp(x),
+        let Shape::Graph { rising } = arc.shape else {
+            return arc.lo.x.cmp(x);
+        };
+        if K::ENCLOSES && arc.ends[0].0.below(&xi) && xi.below(&arc.ends[1].0) {
+            filter::settled(Stage::Double);
+        } else if *x <= arc.lo.x {
+            return Ordering::Greater;
+        } else if *x >= arc.hi.x {
+            return Ordering::Less;
+        }
+        if (*t >= self.time_at(arc, x)) == rising {
+            Ordering::Greater
+        } else {
+            Ordering::Less
         }
     }
 
@@ -383,6 +390,14 @@ impl<K: Kernel> Slice<K> {
             t,
             on,
         };
+        if matches!(
+            (a.shape, b.shape),
+            (Shape::Graph { .. }, Shape::Graph { .. })
+        ) && self.apart(ia, ib)
+        {
+            filter::settled(Stage::Double);
+            return None;
+        }
         if self.coincide(ia, ib) {
             // Ends in order of time, each with its own handles.
             return [b.start(), b.end()]
@@ -453,16 +468,5 @@ pub fn cmp_horizontal<K: Kernel>(arc: &Arc<K>, after: bool) -> Ordering {
         Shape::Graph { rising } if rising == after => Ordering::Greater,
         Shape::Graph { .. } => Ordering::Less,
         _ => Ordering::Equal,
-    }
-}
-
-impl<K: Kernel> Arc<K> {
-    /// Whether x lies between its ends, ends included.
-    pub fn spans_x(&self, x: &K::Root) -> bool {
-        let i = x.interval();
-        if i.below(&self.x_span) || self.x_span.below(&i) {
-            return false;
-        }
-        self.lo.x <= *x && *x <= self.hi.x
     }
 }

@@ -37,6 +37,8 @@ pub(super) struct Strip {
     pub(super) graphs: Vec<SourceArc>,
     pub(super) uprights: Vec<Upright>,
     pub(super) glue: Vec<Glue>,
+    /// For each upright of an arc whether it is the other side of the one before it.
+    pub(super) second: Vec<bool>,
     /// What each graph, then each upright stands for.
     pub(super) owners: Vec<Owner>,
     /// Where anything can end on the cut, ascending.
@@ -106,6 +108,7 @@ impl Strip {
             graphs: Vec::with_capacity(slice.arcs().len() + 2),
             uprights: Vec::new(),
             glue: Vec::new(),
+            second: Vec::new(),
             owners: Vec::with_capacity(slice.arcs().len() + 2),
             stops: vec![zero.clone(), end.clone()],
             at_cut: Vec::new(),
@@ -205,11 +208,13 @@ impl Strip {
             let three = [Int::from(-3), Int::one(), Int::zero()];
             let u = RootOf { c: three, k: 0 };
             self.uprights.push(Upright { u, ..up.clone() });
+            self.second.push(false);
             owners.push(Owner::Arc(id));
             self.at_cut.extend([(lo.clone(), id), (hi.clone(), id)]);
             self.stops.extend([lo, hi]);
         }
         self.uprights.push(up);
+        self.second.push(cut);
         owners.push(Owner::Arc(id));
         Some(())
     }

@@ -3,8 +3,8 @@
 //! Each says how the scene would change if the gap were taken for zero or crossed, so a setting
 //! that cannot see the gap is found out.
 
-use super::score::{Verdict, score};
-use super::setting::Setting;
+use super::score::{Observed, Verdict, score};
+use super::setting::{Outcome, Setting};
 use crate::scene::{Scene, read_scene};
 use serde::Serialize;
 use std::time::Duration;
@@ -167,13 +167,32 @@ pub struct Breakdown {
     pub family: String,
     /// The settings.
     pub settings: Vec<String>,
-    /// The first k from which each is not right, null if it never lies.
+    /// The k from which each is not right, null if it never lies: the right k before it is its
+    /// neighbour, found by halving between the k that were tried.
     pub lies_from: Vec<Option<u32>>,
     /// One entry a k.
     pub gaps: Vec<Gap>,
 }
 
-/// Closes the gap over the given k.
+/// What is right about a scene: what the first of the usual settings, which proves it, sees.
+fn reference(scene: &Scene, limit: Duration) -> Option<Observed> {
+    Setting::usual(0.0)[0].run(scene, limit).observed
+}
+
+/// What a setting's run is worth, in a word.
+fn verdict(setting: &Setting, right: &Observed, run: &Outcome) -> &'static str {
+    let coarsely = matches!(setting, Setting::Stepping(_));
+    let sc = score(right, run.observed.as_ref(), run.broke, coarsely);
+    match sc.verdict {
+        Verdict::Right if sc.missed + sc.spurious > 0 => "events",
+        Verdict::Right => "right",
+        Verdict::Wrong => "wrong",
+        Verdict::Undecided => "undecided",
+        Verdict::Broken => "broken",
+    }
+}
+
+/// Closes the gap over the given k, which ascend.
 pub fn breakdown(
     family: &Family,
     ks: &[u32],
@@ -181,39 +200,50 @@ pub fn breakdown(
     repeat: usize,
     limit: Duration,
 ) -> Breakdown {
-    let mut gaps = Vec::new();
+    let mut gaps: Vec<Gap> = Vec::new();
     for &k in ks {
         let scene = family.scene(k);
-        let Some(right) = Setting::usual(0.0)[0].run(&scene, limit).observed else {
+        let Some(right) = reference(&scene, limit) else {
             continue;
         };
         let cells = settings
             .iter()
             .map(|s| {
                 let first = s.run(&scene, limit);
-                let coarsely = matches!(s, Setting::Stepping(_));
-                let sc = score(&right, first.observed.as_ref(), first.broke, coarsely);
+                let verdict = verdict(s, &right, &first);
                 let mut seconds = first.seconds;
                 for _ in 1..repeat {
                     seconds = seconds.min(s.run(&scene, limit).seconds);
                 }
-                let verdict = match sc.verdict {
-                    Verdict::Right if sc.missed + sc.spurious > 0 => "events",
-                    Verdict::Right => "right",
-                    Verdict::Wrong => "wrong",
-                    Verdict::Undecided => "undecided",
-                    Verdict::Broken => "broken",
-                };
                 Cell { verdict, seconds }
             })
             .collect();
         gaps.push(Gap { k, cells });
     }
-    let lies_from = (0..settings.len())
-        .map(|i| {
-            gaps.iter()
-                .find(|g| g.cells[i].verdict != "right")
-                .map(|g| g.k)
+    let lies_at = |s: &Setting, k: u32| {
+        let scene = family.scene(k);
+        reference(&scene, limit)
+            .is_some_and(|right| verdict(s, &right, &s.run(&scene, limit)) != "right")
+    };
+    let lies_from = settings
+        .iter()
+        .enumerate()
+        .map(|(i, s)| {
+            let first = gaps.iter().position(|g| g.cells[i].verdict != "right")?;
+            let mut wrong = gaps[first].k;
+            let Some(before) = first.checked_sub(1) else {
+                return Some(wrong);
+            };
+            let mut right = gaps[before].k;
+            while wrong - right > 1 {
+                let middle = right + (wrong - right) / 2;
+                if lies_at(s, middle) {
+                    wrong = middle;
+                } else {
+                    right = middle;
+                }
+            }
+            Some(wrong)
         })
         .collect();
     Breakdown {

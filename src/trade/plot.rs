@@ -228,7 +228,10 @@ pub fn map(m: &Map) -> String {
                     let colour = COLOURS[usize::from(line[from]) % COLOURS.len()];
                     let x = left + from as f64 * unit;
                     let y = 40.0 + row as f64 * unit;
-                    pen.rect([x, y, (to - from) as f64 * unit, unit], colour, "none");
+                    // A row reaches under the next, or the paper shines through between them.
+                    let below = if row + 1 < m.size { 1.5 } else { 1.0 };
+                    let (wide, high) = ((to - from) as f64 * unit, below * unit);
+                    pen.rect([x, y, wide, high], colour, "none");
                     from = to;
                 }
             }

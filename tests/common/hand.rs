@@ -262,7 +262,7 @@ pub fn by_both_methods(scene: &Scene) -> Trajectory {
     let text = |t: &Trajectory| {
         let how = Provenance {
             arithmetic: "filtered",
-            method: "either",
+            method: Method::Naive,
         };
         let mut doc = serde_json::to_value(ResultDocument::new(scene, t, how)).unwrap();
         doc.as_object_mut().unwrap().remove("ledger");

@@ -199,7 +199,7 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "filtered")]
     pub(crate) arithmetic: Arithmetic,
     /// With f64: zeros nearer than this are one
-    #[arg(long, value_name = "DISTANCE", value_parser = tolerance, default_value = "1e-9")]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = tolerance, default_value = "1e-9")]
     pub(crate) tolerance: f64,
     /// With f64: which zeros are taken for one
     #[arg(long, value_enum, default_value = "names")]
@@ -208,10 +208,13 @@ pub(crate) struct Engine {
     #[arg(long, value_enum, default_value = "num")]
     pub(crate) backend: Backend,
     /// Which algorithm runs
-    #[arg(long, value_enum, default_value = "sweep")]
+    #[arg(long, value_enum, default_value = "auto")]
     pub(crate) method: Method,
+    /// Which way the sweep comes by the free component
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(crate) face: snapfit::face::Method,
     /// Give up, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     pub(crate) time_limit: Option<Duration>,
 }
 
@@ -228,7 +231,8 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
         .map_err(|_| "expected a number of seconds".to_owned())?;
-    Duration::try_from_secs_f64(seconds).map_err(|e| e.to_string())
+    Duration::try_from_secs_f64(seconds)
+        .map_err(|_| "expected a number of seconds that is not negative".to_owned())
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -261,6 +265,8 @@ pub(crate) enum Backend {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
+    /// By the size of each phase; the result says what ran
+    Auto,
     /// A sweep over the free component; with exact or f64 every step looks at every arc
     Sweep,
     /// Every step looks at every arc
@@ -283,6 +289,8 @@ pub(crate) enum Name {
     Structure,
     /// The result of `simulate`
     Result,
+    /// The result of `slice`
+    Slice,
     /// The result of `classify`
     Classify,
     /// The result of `forces`

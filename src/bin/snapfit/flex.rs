@@ -26,7 +26,7 @@ pub(crate) struct FlexArgs {
     #[arg(long, value_enum)]
     path: Option<PathArg>,
     /// Give up, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     time_limit: Option<Duration>,
     /// Write every linear program into a directory, as step0.mps and so on
     #[arg(long, value_name = "DIR")]
@@ -103,7 +103,8 @@ enum PathArg {
 
 pub(crate) fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<StructureFile, Failure> {
     let overrides = crate::overrides(common)?;
-    let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
+    let file = flex::read_structure(name, bytes, &overrides)
+        .map_err(|errors| crate::mistaken(name, bytes, flex::Guise::Structure, errors))?;
     if !common.quiet {
         for warning in file.warnings() {
             let _ = writeln!(std::io::stderr(), "{warning}");
@@ -187,6 +188,7 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
 pub(crate) fn run_generate(args: &GenerateArgs) -> Result<u8, Failure> {
     let structure = match (&args.drawing, args.bodies) {
         (Some(path), _) => {
+            output::spare_input(path, args.out.as_deref())?;
             let text =
                 std::fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
             flex::apps::layout::layout(&args.family, &text)?
@@ -205,7 +207,8 @@ pub(crate) fn run_check(
     format: Option<Format>,
 ) -> Result<u8, Failure> {
     let overrides = crate::overrides(common)?;
-    let file = flex::read_structure(name, bytes, &overrides).map_err(Failure::Scene)?;
+    let file = flex::read_structure(name, bytes, &overrides)
+        .map_err(|errors| crate::mistaken(name, bytes, flex::Guise::Structure, errors))?;
     let warnings = file.warnings().iter().map(ToString::to_string).collect();
     let report = StructureCheck::of(file.structure(), warnings);
     let text = match crate::format_of(format, common) {

@@ -34,7 +34,7 @@ pub(crate) struct BraceArgs {
     #[arg(long, value_name = "PATH")]
     svg: Option<PathBuf>,
     /// Give up, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     time_limit: Option<Duration>,
 }
 
@@ -82,7 +82,7 @@ pub(crate) struct SeparateArgs {
     #[arg(long, value_enum)]
     expect: Option<ExpectArg>,
     /// Give up on a program, and on the sequence, after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = seconds)]
     time_limit: Option<Duration>,
 }
 

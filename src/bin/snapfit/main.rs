@@ -18,6 +18,7 @@ use args::{Arithmetic, Check, Cli, Common, Engine, Format, Method, Name, Render,
 use clap::Parser;
 use clap::error::ErrorKind;
 use snapfit::analysis;
+use snapfit::flex::{Guise, guise};
 use snapfit::kernel::{FloatOptions, Identify};
 use snapfit::motion::{self, Options, OutcomeKind, PlanError, Trajectory, simulate};
 use snapfit::report::json::{Provenance, ResultDocument, result_schema};
@@ -79,14 +80,18 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Brace(args) => flex_apps::run_brace(args),
         Verb::Loosen(args) => flex_apps::run_loosen(args),
         Verb::Separate(args) => flex_apps::run_separate(args),
-        Verb::Lp(args) => Ok(progress::solving(args)),
-        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args)),
+        Verb::Lp(args) => {
+            output::spare_input(&args.model, args.out.as_deref())?;
+            Ok(progress::solving(args))
+        }
+        Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args, &output::write)),
         Verb::Trade(args) => trade::run(args),
         Verb::Schema(args) => {
             let schema = match args.name {
                 Name::Scene => scene::scene_schema(),
                 Name::Structure => snapfit::flex::structure_schema(),
                 Name::Result => result_schema(),
+                Name::Slice => snapfit::report::slice::slice_schema(),
                 Name::Classify => analysis::classify_schema(),
                 Name::Forces => analysis::forces_schema(),
             };
@@ -196,7 +201,24 @@ fn overrides(common: &Common) -> Result<Vec<(&str, &str)>, Failure> {
 
 fn parse(common: &Common, name: &str, bytes: &[u8]) -> Result<SceneFile, Failure> {
     let overrides = overrides(common)?;
-    scene::read_scene_bytes(name, bytes, &overrides).map_err(Failure::Scene)
+    scene::read_scene_bytes(name, bytes, &overrides)
+        .map_err(|errors| mistaken(name, bytes, Guise::Scene, errors))
+}
+
+/// A file of another kind is named as such, instead of all its keys that are unknown here.
+fn mistaken(name: &str, bytes: &[u8], wanted: Guise, errors: Vec<Diagnostic>) -> Failure {
+    let is = guise(name, bytes).filter(|g| *g != wanted);
+    let help = match (is, wanted) {
+        (Some(Guise::Result), _) => "this is a result; give the file that it was made from",
+        (Some(Guise::Structure), _) => {
+            "this is a structure; it is for flex, brace, loosen, separate, render and check"
+        }
+        (Some(Guise::Scene), _) => {
+            "this is a scene; it is for simulate, classify, forces, slice, trade, render and check"
+        }
+        (None, _) => return Failure::Scene(errors),
+    };
+    Failure::Message(format!("{name}:1:1: {help}"))
 }
 
 fn simulated(
@@ -222,6 +244,7 @@ fn simulated(
         progress: Some(&tell),
         arithmetic: arithmetic(engine),
         method: method(engine),
+        face: engine.face,
     };
     let trajectory = simulate(file.scene(), &options).map_err(|error| misplanned(file, &error))?;
     let document = ResultDocument::new(file.scene(), &trajectory, how);
@@ -260,13 +283,14 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
     let arithmetic = arithmetic(engine);
     Ok(Provenance {
         arithmetic: arithmetic.name(),
-        method: method(engine).under(&arithmetic).name(),
+        method: method(engine).under(&arithmetic),
     })
 }
 
 /// The algorithm that the options ask for.
 fn method(engine: &Engine) -> motion::Method {
     match engine.method {
+        Method::Auto => motion::Method::Auto,
         Method::Sweep => motion::Method::Sweep,
         Method::Naive => motion::Method::Naive,
     }

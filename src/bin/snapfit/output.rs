@@ -17,14 +17,29 @@ pub(crate) fn write(to: Option<&Path>, text: &str) -> Result<(), String> {
     replace(path, text).map_err(|e| format!("{}: {e}", path.display()))
 }
 
+/// Whether two paths mean one file.
+fn same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// Refuses to write two results to one file.
+pub(crate) fn apart(one: Option<&Path>, other: Option<&Path>) -> Result<(), String> {
+    match (one, other) {
+        (Some(a), Some(b)) if a != Path::new("-") && same(a, b) => Err(format!(
+            "{}: two results go to this file; one would be lost",
+            a.display()
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Refuses an output path that is the input file.
 pub(crate) fn spare_input(input: &Path, out: Option<&Path>) -> Result<(), String> {
-    let same = |a: &Path, b: &Path| match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    };
     match out {
-        Some(out) if same(input, out) => Err(format!(
+        Some(out) if input != Path::new("-") && same(input, out) => Err(format!(
             "{}: this is the input; it would be lost",
             out.display()
         )),

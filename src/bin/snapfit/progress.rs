@@ -1,5 +1,6 @@
 //! A spinner on standard error for work that takes a while.
 
+use super::output;
 use indicatif::{ProgressBar, ProgressStyle};
 use snapfit::lp::Meter;
 use snapfit::lp::cli::{LpArgs, run_lp};
@@ -68,7 +69,7 @@ impl Spinner {
 pub(crate) fn solving(args: &LpArgs) -> u8 {
     let meter = Arc::new(Meter::default());
     if args.quiet || !std::io::stderr().is_terminal() {
-        return run_lp(args, &meter);
+        return run_lp(args, &meter, &output::write);
     }
     let spinner = Spinner::start();
     let (done, ending) = channel::<()>();
@@ -81,7 +82,7 @@ pub(crate) fn solving(args: &LpArgs) -> u8 {
             }
         }
     });
-    let status = run_lp(args, &meter);
+    let status = run_lp(args, &meter, &output::write);
     drop(done);
     let _ = follower.join();
     status

@@ -35,8 +35,11 @@ pub(crate) struct SliceArgs {
     #[arg(long, value_name = "TIME,TAN_HALF", allow_hyphen_values = true)]
     reach: Vec<String>,
     /// Ask for the free intervals just after a time from the start of the phase (repeatable)
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     at: Vec<String>,
+    /// Ask how the pawl would move from the orientation tan(θ/2) at the start of the phase (repeatable)
+    #[arg(long, value_name = "TAN_HALF", allow_hyphen_values = true)]
+    from: Vec<String>,
 }
 
 fn number(text: &str) -> Result<Rat, String> {
@@ -56,6 +59,7 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
     };
     let options = Options {
         deadline: super::deadline(engine),
+        face: engine.face,
         ..Options::default()
     };
     let mut found = None;
@@ -94,6 +98,11 @@ pub(crate) fn run_slice(args: &SliceArgs) -> Result<u8, Failure> {
         .iter()
         .map(|t| number(t))
         .collect::<Result<_, _>>()?;
+    let from: Vec<Rat> = args
+        .from
+        .iter()
+        .map(|u| number(u))
+        .collect::<Result<_, _>>()?;
     let file = super::read(&args.common)?;
     let (seen, _) = seen(&file, &args.engine, &args.which)?;
     let mut document = SliceDocument::new(file.scene(), &seen);
@@ -106,6 +115,15 @@ pub(crate) fn run_slice(args: &SliceArgs) -> Result<u8, Failure> {
             return Err(format!("--at {t}: the phase lasts from 0 to before {end}").into());
         }
         document.intervals(&seen, t);
+    }
+    for u in &from {
+        if !seen.may_start(file.scene(), u) {
+            return Err(format!(
+                "--from {u}: the pawl cannot start there: it would penetrate or lie past its stops"
+            )
+            .into());
+        }
+        document.run(file.scene(), &seen, u);
     }
     let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
     output::write(args.common.out.as_deref(), &(pretty(&text, 110) + "\n"))?;

@@ -38,7 +38,7 @@ pub(crate) struct Trade {
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: u32,
     /// f64: zeros nearer than this are one
-    #[arg(long, value_name = "DISTANCE", value_parser = super::args::tolerance, default_value = "1e-9")]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = super::args::tolerance, default_value = "1e-9")]
     tolerance: f64,
     /// Take the least time of so many runs
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
@@ -47,7 +47,7 @@ pub(crate) struct Trade {
     #[arg(long)]
     fast: bool,
     /// Give up on a run, undecided, after so many seconds
-    #[arg(long, value_name = "SECONDS", default_value = "20", value_parser = super::args::seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "20", allow_negative_numbers = true, value_parser = super::args::seconds)]
     time_limit: Duration,
     /// What to print [default: table on a terminal, else json]
     #[arg(long, value_enum)]
@@ -95,10 +95,16 @@ pub(crate) fn run(args: &Trade) -> Result<u8, Failure> {
 }
 
 fn compare(args: &Trade) -> Result<u8, Failure> {
+    output::apart(args.svg.as_deref(), args.out.as_deref())?;
     if let Some(name) = &args.breakdown {
         return close(args, name);
     }
     let files = collect(&args.files)?;
+    for file in &files {
+        for to in [&args.svg, &args.out] {
+            output::spare_input(file, to.as_deref())?;
+        }
+    }
     let mut scenes = Vec::new();
     for file in &files {
         let bytes = std::fs::read(file).map_err(|e| format!("{}: {e}", file.display()))?;

@@ -49,7 +49,9 @@ pub(super) fn run_classify(args: &Classify) -> Result<u8, Failure> {
     let expected = args.expect.as_deref().map(expectation).transpose()?;
     for to in [&args.svg, &args.escape].into_iter().flatten() {
         output::prepare(&args.common.file, Some(to))?;
+        output::apart(Some(to), args.common.out.as_deref())?;
     }
+    output::apart(args.svg.as_deref(), args.escape.as_deref())?;
     let file = read(&args.common)?;
     let (ask, how) = ask(&args.engine)?;
     let (document, decisive) = analysis::document::classify_with_way(file.scene(), &ask)
@@ -123,6 +125,7 @@ fn drawing(
 pub(super) fn run_forces(args: &Forces) -> Result<u8, Failure> {
     if let Some(to) = &args.svg {
         output::prepare(&args.common.file, Some(to))?;
+        output::apart(Some(to), args.common.out.as_deref())?;
     }
     let file = read(&args.common)?;
     let wish = analysis::Wish {

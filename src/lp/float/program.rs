@@ -65,6 +65,10 @@ pub(crate) struct Program {
     pub(crate) upper: Vec<f64>,
     /// Powers of two by which columns and rows are scaled; those of the problem it is the dual of.
     pub(crate) exponents: Vec<i64>,
+    /// Powers of two by which all bounds are multiplied, and all costs, so that their sizes are
+    /// about 1, which the tolerances take for granted; those of the problem it is the dual of.
+    pub(crate) bound_shift: i64,
+    pub(crate) cost_shift: i64,
     /// Whether this is the dual of the problem it was made from.
     pub(crate) dualised: bool,
 }
@@ -114,12 +118,21 @@ impl Program {
         }
         let (bound, bound_exponent) = mantissa(&p.bound_scale);
         let (scale, scale_exponent) = mantissa(&p.cost_scale.abs());
+        let place = |k: usize| if k < p.n { -exponents[k] } else { exponents[k] };
+        let both = || (0..p.n + p.m).flat_map(|k| [(k, &p.lower[k]), (k, &p.upper[k])]);
+        let bound_shift = centre(both().filter_map(|(k, v)| {
+            let v = v.as_ref().filter(|v| !v.is_zero())?;
+            Some(v.bits() as i64 - bound_exponent + place(k))
+        }));
+        let cost_shift = centre((0..p.n).filter_map(|j| {
+            let c = Some(&p.cost[j]).filter(|c| !c.is_zero())?;
+            Some(c.bits() as i64 - scale_exponent + exponents[j])
+        }));
         let limit = |v: &Option<crate::number::Int>, k: usize, infinite: f64| match v {
             None => infinite,
             Some(v) => {
                 let (a, x) = mantissa(v);
-                let shift = if k < p.n { -exponents[k] } else { exponents[k] };
-                ldexp(a / bound, x - bound_exponent + shift)
+                ldexp(a / bound, x - bound_exponent + place(k) + bound_shift)
             }
         };
         let lower = (0..p.n + p.m).map(|k| limit(&p.lower[k], k, f64::NEG_INFINITY));
@@ -127,7 +140,7 @@ impl Program {
         let (lower, upper) = (lower.collect(), upper.collect());
         let cost = (0..p.n).map(|j| {
             let (a, x) = mantissa(&p.cost[j]);
-            ldexp(a / scale, x - scale_exponent + exponents[j])
+            ldexp(a / scale, x - scale_exponent + exponents[j] + cost_shift)
         });
         let cost: Vec<f64> = cost.collect();
         Program {
@@ -139,6 +152,8 @@ impl Program {
             lower,
             upper,
             exponents,
+            bound_shift,
+            cost_shift,
             dualised: false,
         }
     }
@@ -200,6 +215,8 @@ impl Program {
             lower,
             upper,
             exponents: self.exponents.clone(),
+            bound_shift: self.bound_shift,
+            cost_shift: self.cost_shift,
             dualised: true,
         })
     }
@@ -253,11 +270,23 @@ impl Program {
         let rows = y.iter().enumerate();
         (
             columns
-                .map(|(j, v)| ldexp(v * size(&p.column_scale[j]), self.exponents[j]))
+                .map(|(j, v)| {
+                    let shift = self.exponents[j] - self.bound_shift;
+                    ldexp(v * size(&p.column_scale[j]), shift)
+                })
                 .collect(),
-            rows.map(|(i, v)| ldexp(turn * v * size(&p.row_scale[i]), self.exponents[p.n + i]))
-                .collect(),
+            rows.map(|(i, v)| {
+                let shift = self.exponents[p.n + i] - self.cost_shift;
+                ldexp(turn * v * size(&p.row_scale[i]), shift)
+            })
+            .collect(),
         )
+    }
+
+    /// The objective in the units of the problem, from that of this program.
+    pub(crate) fn unscaled_objective(&self, value: f64) -> f64 {
+        let value = if self.dualised { -value } else { value };
+        ldexp(value, -self.bound_shift - self.cost_shift)
     }
 
     /// The column of a variable: entries of a column, or −1 for a logical.
@@ -270,6 +299,23 @@ impl Program {
             f(v - self.n, -1.0);
         }
     }
+}
+
+/// Exponents are shifted no farther up than to this one.
+const HIGHEST: i64 = 20;
+
+/// The shift that brings numbers of these binary exponents to about 1 in the geometric mean.
+fn centre(exponents: impl Iterator<Item = i64>) -> i64 {
+    let (mut sum, mut count, mut high) = (0i128, 0i128, i64::MIN);
+    for e in exponents {
+        sum += i128::from(e);
+        count += 1;
+        high = high.max(e);
+    }
+    if count == 0 {
+        return 0;
+    }
+    (-(sum.div_euclid(count)) as i64).min(HIGHEST - high)
 }
 
 fn mantissa_exponent(matrix: &crate::lp::problem::Matrix, e: usize) -> i64 {

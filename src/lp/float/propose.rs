@@ -115,10 +115,6 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
             Ending::Infeasible | Ending::Unbounded if program.dualised => Ending::Stuck,
             other => other,
         },
-        objective: if program.dualised {
-            -objective
-        } else {
-            objective
-        },
+        objective: program.unscaled_objective(objective),
     }
 }

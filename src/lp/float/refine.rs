@@ -31,6 +31,7 @@ pub(crate) struct Refiner {
 struct Units<'a> {
     problem: &'a Problem,
     exponents: &'a [i64],
+    /// Mantissas and exponents of the problem's scales over the program's.
     bound: (f64, i64),
     cost: (f64, i64),
 }
@@ -106,11 +107,12 @@ fn magnified(
 ) -> Option<Program> {
     let p = frame.problem;
     let total = p.n + p.m;
+    let (bound, cost) = (mantissa(&p.bound_scale), mantissa(&p.cost_scale.abs()));
     let units = Units {
         problem: p,
         exponents: &direct.exponents,
-        bound: mantissa(&p.bound_scale),
-        cost: mantissa(&p.cost_scale.abs()),
+        bound: (bound.0, bound.1 - direct.bound_shift),
+        cost: (cost.0, cost.1 - direct.cost_shift),
     };
     // x̂ − l, u − x̂ and d̂, unmagnified.
     let mut below = vec![f64::INFINITY; total];

@@ -87,6 +87,8 @@ pub fn read_model(name: &str, bytes: &[u8]) -> Result<Model, LpError> {
         let column = String::from_utf8_lossy(&before[start..]).chars().count() + 1;
         error(line, column, "not UTF-8 text".to_string())
     })?;
+    // Some editors put a byte order mark before everything.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let base = name.strip_suffix(".gz").unwrap_or(name);
     let lower = base.to_ascii_lowercase();
     let is_mps = if lower.ends_with(".mps") {

@@ -147,9 +147,16 @@ impl Follower<'_> {
         }
         let Some(&(lo, hi)) = found.first() else {
             self.out.end = Some((How::Jammed, 0.0));
+            // A gap that opens from a point is thinner than any of the offsets above: look finely.
+            let opens = |t: f64| {
+                (-400..=400).any(|k| {
+                    self.interval(t, theta0 + f64::from(k) * LEAP / 800.0)
+                        .is_some()
+                })
+            };
             if [1e2, 1e4, 1e6]
                 .iter()
-                .any(|k| !reach(self, k * h).is_empty())
+                .any(|k| !reach(self, k * h).is_empty() || opens(k * h))
             {
                 self.out.doubt = Some((0.0, "a narrow start"));
             }

@@ -1,0 +1,205 @@
+//! Numbers too near for doubles, told apart from a point close by.
+//!
+//! The idea: two numbers 2⁻²⁰⁰ apart have the same enclosures, but seen from a dyadic point a close to both, their
+//! distances x − a are doubles with all their digits. The distance of a root x of h from a is −h(a)/h'(ξ)
+//! with ξ between: h(a) is computed exactly, once, in integers, and the slope with error bounds over the
+//! enclosure that holds x and a. That takes a few long products a number, where an isolation takes
+//! hundreds. One point, a *frame*, serves a whole cluster; it comes from the first number that had a neighbour.
+//! The second level is for numbers that even the first frame does not tell apart.
+
+use super::approx::{Approx, horner};
+use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId};
+use crate::number::{Int, Rat};
+use std::cmp::Ordering;
+
+/// The dyadic point `at`·2^-bits.
+pub(super) struct Frame {
+    /// The number that it was made for.
+    owner: NumId,
+    at: Int,
+    bits: u64,
+    /// It lies in [lo, hi].
+    lo: f64,
+    hi: f64,
+}
+
+/// How many bits after the point the frames of each level have.
+const LEVELS: [u32; 2] = [320, 1280];
+
+impl Kernel {
+    /// The order of two numbers by frames of a level; None where these do not tell (equal numbers, above all).
+    pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId, level: usize) -> Option<Ordering> {
+        // Those that were asked about before mostly are in one frame.
+        if let (Some(&(f, a)), Some(&(g, b))) = (self.local.get(&x), self.local.get(&y))
+            && f == g
+            && let Some(o) = apart(a, b)
+        {
+            return Some(o);
+        }
+        for id in [x, y] {
+            if let Some(&(f, _)) = self.local.get(&id)
+                && self.frames[f as usize].bits > u64::from(LEVELS[level])
+            {
+                return self.cmp_from(x, y, f);
+            }
+        }
+        let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
+        let old = self.frame_near.get(&key).copied();
+        if let Some(f) = old {
+            if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
+                return Some(o);
+            }
+            if self.is_at(x, f) || self.is_at(y, f) {
+                // Another frame there would not tell more.
+                return None;
+            }
+        }
+        let f = self.new_frame(x, LEVELS[level]);
+        self.frame_near.insert(key, f);
+        self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+    }
+
+    /// Equal, if both are proven to be the number that a frame was made for, whose equation is known if it has one
+    /// of low degree.
+    fn are_owner(&mut self, x: NumId, y: NumId, f: u32) -> Option<Ordering> {
+        let owner = self.frames[f as usize].owner;
+        for id in [x, y] {
+            let owner = self.find(owner);
+            if self.find(id) != owner && self.same_root(owner, id) {
+                self.unite(owner, id);
+            }
+        }
+        (self.find(x) == self.find(y)).then_some(Ordering::Equal)
+    }
+
+    /// Whether a frame hardly differs from a number: its distance is not told from nought, or was not found.
+    fn is_at(&self, x: NumId, f: u32) -> bool {
+        match self.local.get(&x) {
+            Some(&(g, d)) => g == f && d.sign().is_none_or(|s| s == 0),
+            None => true,
+        }
+    }
+
+    fn cmp_from(&mut self, x: NumId, y: NumId, f: u32) -> Option<Ordering> {
+        let a = self.from_frame(x, f)?;
+        let b = self.from_frame(y, f)?;
+        apart(a, b)
+    }
+
+    fn new_frame(&mut self, x: NumId, bits: u32) -> u32 {
+        let (lo, _) = self.exact(x).enclosure(bits);
+        let bits = u64::from(bits);
+        let at = lo.numer().shl(bits).div_rem_floor(lo.denom()).0;
+        let i = Rat::new(at.clone(), Int::one().shl(bits)).interval();
+        self.frames.push(Frame {
+            owner: x,
+            at,
+            bits,
+            lo: i.lo,
+            hi: i.hi,
+        });
+        self.frames.len() as u32 - 1
+    }
+
+    /// The distance of a number from a frame.
+    fn from_frame(&mut self, x: NumId, f: u32) -> Option<Approx> {
+        if let Some(&(g, d)) = self.local.get(&x)
+            && g == f
+        {
+            return Some(d);
+        }
+        // The exact value of h at the frame, and h.
+        let (value, h) = match self.nums[x as usize].def {
+            Def::Root(i) => {
+                let (m, _) = self.roots[i as usize];
+                let frame = &self.frames[f as usize];
+                let value = at_frame(&m.map(Int::from), frame);
+                let value = scaled(&value, 2 * frame.bits)?;
+                let mut h = [Approx::default(); 5];
+                for (h, &c) in h.iter_mut().zip(&m) {
+                    *h = Approx::from_word(c);
+                }
+                (value, h)
+            }
+            Def::Cross(c, d) => {
+                for curve in [c, d] {
+                    self.curve_at_frame(curve, f);
+                }
+                let (p, q) = &self.framed[&(c, f)];
+                let (r, s) = &self.framed[&(d, f)];
+                let value = p * s - r * q;
+                let bits = self.frames[f as usize].bits;
+                let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
+                (
+                    scaled(&value, 4 * bits + scale)?,
+                    self.full_difference(c, d),
+                )
+            }
+            Def::Known => return None,
+        };
+        let (frame, n) = (&self.frames[f as usize], &self.nums[x as usize]);
+        let around = Approx::between(frame.lo.min(n.lo), frame.hi.max(n.hi));
+        let slope: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
+        let slope = horner(&slope, around);
+        // One root where h is steep; it is x if anything is.
+        if !matches!(slope.sign(), Some(-1 | 1)) {
+            return None;
+        }
+        let d = (-value).over(slope);
+        if !(d.v.is_finite() && d.e.is_finite()) {
+            return None;
+        }
+        self.local.insert(x, (f, d));
+        Some(d)
+    }
+
+    /// P and Q at a frame, times 2^(2·bits).
+    fn curve_at_frame(&mut self, c: CurveId, f: u32) {
+        if self.framed.contains_key(&(c, f)) {
+            return;
+        }
+        let frame = &self.frames[f as usize];
+        let value = match &self.curves[c as usize].exact {
+            Coeffs::Small(c) => {
+                let c = c.map(Int::from);
+                (at_frame(&c[..3], frame), at_frame(&c[3..], frame))
+            }
+            Coeffs::Big(c) => (at_frame(&c[..3], frame), at_frame(&c[3..], frame)),
+        };
+        self.framed.insert((c, f), value);
+    }
+}
+
+/// A quadratic at a frame, times 2^(2·bits).
+fn at_frame(m: &[Int], frame: &Frame) -> Int {
+    let linear = &m[2] * &frame.at + m[1].shl(frame.bits);
+    linear * &frame.at + m[0].shl(2 * frame.bits)
+}
+
+/// v·2^-bits; None where that leaves the doubles.
+pub(super) fn scaled(v: &Int, bits: u64) -> Option<Approx> {
+    if v.is_zero() {
+        return Some(Approx::exact(0.0));
+    }
+    let (top, below, _) = v.abs().top64();
+    let exponent = i64::try_from(below).ok()? - i64::try_from(bits).ok()?;
+    if !(-900..900).contains(&exponent) {
+        return None;
+    }
+    let size = top as f64 * 2f64.powi(exponent as i32);
+    Some(Approx {
+        v: if v.sign() < 0 { -size } else { size },
+        // The bits cut off, and the rounding to a double.
+        e: size * f64::EPSILON,
+    })
+}
+
+fn apart(a: Approx, b: Approx) -> Option<Ordering> {
+    if a.hi() < b.lo() {
+        Some(Ordering::Less)
+    } else if b.hi() < a.lo() {
+        Some(Ordering::Greater)
+    } else {
+        None
+    }
+}
