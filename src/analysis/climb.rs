@@ -43,6 +43,9 @@ pub(super) struct Summit<X> {
     pub(super) settled: bool,
 }
 
+/// A cell that is given up, with a bound of its values where one is known.
+type Given<X> = ([X; 2], Option<X>);
+
 /// Searches cells, with the boxes of both ends of their range. `known` is a value that is attained,
 /// with its place; `budget` bounds the cells looked at. None where the value at an end is not
 /// known.
@@ -73,7 +76,7 @@ pub(super) fn climb<S: Scale>(
             (lo, at) = (value, place);
         }
     }
-    let mut left: Vec<([S::X; 2], Option<S::X>)> = Vec::new();
+    let mut left: Vec<Given<S::X>> = Vec::new();
     while let Some([l, r]) = cells.pop() {
         let cell = [&l, &r];
         if budget == 0 {

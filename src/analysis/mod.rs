@@ -3,8 +3,8 @@
 //! A trajectory says what moves; a designer asks what that means. [`classify`](fn@classify) runs the ways out
 //! from where a plan ended ([`escape`]) and names the weakest; [`critical`] finds the least
 //! friction that would lock, exactly; [`peak`] encloses the forces of the sliding stretches
-//! ([`stretch`]: the balance of forces is derived there) as narrowly as asked, with the outward
-//! rounded arithmetic of [`fix`]. Kinematic and friction verdicts are exact; what holds an
+//! ([`stretch`]: the balance of forces is derived there) as narrowly as asked, by doubles with
+//! proven bounds where those tell and by the outward rounded arithmetic of [`fix`] where not. Kinematic and friction verdicts are exact; what holds an
 //! arctangent is enclosed, and decided only when the enclosure decides.
 
 pub mod bound;

@@ -38,9 +38,11 @@ pub(super) struct Way<'a> {
     goal: u32,
     wish: &'a Wish,
     mu: Rat,
-    /// The last irrational instants that were written.
-    clocks: RefCell<VecDeque<(usize, Algebraic, Num)>>,
+    clocks: Clocks,
 }
+
+/// The last irrational instants that were written, by phase.
+type Clocks = RefCell<VecDeque<(usize, Algebraic, Num)>>;
 
 /// How many instants are kept: those of a segment and its peak, and as many more.
 const KEPT: usize = 6;
