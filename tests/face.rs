@@ -87,7 +87,19 @@ struct Level {
 
 /// Half-edges and components of the start's face; None where it lies on an arc.
 fn whole_arrangement(arcs: &[Arc], start: &(Rat, Rat)) -> Option<(u64, u64)> {
+    arrangement_and_points(arcs, start, &[]).map(|a| a.0)
+}
+
+type Counts = (u64, u64);
+
+/// The same, and of each point whether it lies in that face (None where it lies on an arc).
+fn arrangement_and_points(
+    arcs: &[Arc],
+    start: &(Rat, Rat),
+    points: &[(Rat, Rat)],
+) -> Option<(Counts, Vec<Option<bool>>)> {
     let mut xs = vec![Algebraic::from(start.0.clone())];
+    xs.extend(points.iter().map(|p| Algebraic::from(p.0.clone())));
     for (i, a) in arcs.iter().enumerate() {
         match a {
             Arc::Graph { f, l, r } => {
@@ -157,12 +169,6 @@ fn whole_arrangement(arcs: &[Arc], start: &(Rat, Rat)) -> Option<(u64, u64)> {
             .position(|l| l.arcs.contains(&group[0]))
             .expect("a group passes its lines")
     };
-    let z = Algebraic::from(start.0.clone());
-    let start_fn = Fn {
-        p: Poly::constant(start.1.numer().clone()),
-        q: Poly::constant(start.1.denom().clone()),
-    };
-    let mut home = None;
     for (i, line) in lines.iter().enumerate() {
         for k in 0..=line.levels.len() {
             let below = |s: usize| slabs[s].iter().filter(|g| level_of(line, g) < k).count();
@@ -170,25 +176,38 @@ fn whole_arrangement(arcs: &[Arc], start: &(Rat, Rat)) -> Option<(u64, u64)> {
                 cells.join(first[i] + below(i), first[i + 1] + below(i + 1));
             }
         }
-        if xs[i] == z {
-            let mut k = 0;
-            for (j, l) in line.levels.iter().enumerate() {
-                match l.f.cmp_at(&start_fn, &z) {
-                    Ordering::Equal => return None,
-                    Ordering::Less => k = j + 1,
-                    Ordering::Greater => {}
-                }
-            }
-            if k > 0 && line.covered[k - 1] {
-                return None;
-            }
-            let below = slabs[i + 1]
-                .iter()
-                .filter(|g| level_of(line, g) < k)
-                .count();
-            home = Some(first[i + 1] + below);
-        }
     }
+    // The cell of a point; None on an arc.
+    let cell_of = |p: &(Rat, Rat)| {
+        let z = Algebraic::from(p.0.clone());
+        let flat = Fn {
+            p: Poly::constant(p.1.numer().clone()),
+            q: Poly::constant(p.1.denom().clone()),
+        };
+        let i = xs.binary_search(&z).expect("every point has a line");
+        let line = &lines[i];
+        let mut k = 0;
+        for (j, l) in line.levels.iter().enumerate() {
+            match l.f.cmp_at(&flat, &z) {
+                Ordering::Equal => return None,
+                Ordering::Less => k = j + 1,
+                Ordering::Greater => {}
+            }
+        }
+        if k > 0 && line.covered[k - 1] {
+            return None;
+        }
+        let below = slabs[i + 1]
+            .iter()
+            .filter(|g| level_of(line, g) < k)
+            .count();
+        Some(cells.find(first[i + 1] + below))
+    };
+    let home = cell_of(start)?;
+    let inside = points
+        .iter()
+        .map(|p| cell_of(p).map(|c| c == home))
+        .collect();
     // Edges: a group that leaves a vertex, a covered interval.
     for (i, slab) in slabs.iter().enumerate() {
         for g in slab {
@@ -203,7 +222,6 @@ fn whole_arrangement(arcs: &[Arc], start: &(Rat, Rat)) -> Option<(u64, u64)> {
             }
         }
     }
-    let home = cells.find(home.expect("the start has a line"));
     let (mut half_edges, mut components) = (0, Vec::new());
     let mut side = |cell: usize, node: usize, counts: bool| {
         if cells.find(cell) == home {
@@ -233,7 +251,8 @@ fn whole_arrangement(arcs: &[Arc], start: &(Rat, Rat)) -> Option<(u64, u64)> {
     components.sort_unstable();
     components.dedup();
     let frame = u64::from(cells.find(0) == home);
-    Some((half_edges + 4 * frame, components.len() as u64 + frame))
+    let counts = (half_edges + 4 * frame, components.len() as u64 + frame);
+    Some((counts, inside))
 }
 
 fn line(arcs: &[Arc], x: &Algebraic, nodes: &mut Sets) -> Line {
@@ -553,7 +572,42 @@ fn crowd(rng: &mut Rng, kind: u64, size: i64) -> Vec<SourceArc> {
                 let s = if i % 2 == 0 { 70 } else { -70 };
                 arcs.extend(plain([10 * (i / 2) + rng.below(3), s, 0], [10, 0, 0]));
             }
-            // The same with large words in the coefficients.
+            // Some touch at 3/7 and some cross there, with denominators of their own.
+            6 => {
+                let (q0, q2, e) = (9 + rng.below(5), 1 + rng.below(8), rng.within(60));
+                let p = if i % 3 == 0 {
+                    let (s, w) = (rng.within(60), rng.within(60));
+                    [2 * q0 - 3 * s, 7 * s - 3 * w, 2 * q2 + 7 * w]
+                } else {
+                    [2 * q0 + 9 * e, -42 * e, 2 * q2 + 49 * e]
+                };
+                arcs.extend(plain(p, [q0, 0, q2]));
+            }
+            // Through one of two points.
+            7 => {
+                let (c, s, w) = (1 + rng.below(20), rng.within(50), rng.within(50));
+                let (a, h) = [(3, 1), (-4, 2)][i as usize % 2];
+                arcs.extend(plain(
+                    [h * c - a * s, 7 * s - a * w, h * c + 7 * w],
+                    [c, 0, c],
+                ));
+            }
+            // As near one another as no frame tells, with longer coefficients than doubles hold.
+            8 => {
+                let (s, d) = (rng.within(60), Int::one().shl(600));
+                arcs.push(SourceArc {
+                    p: [
+                        Int::from(2 - s) * &d + Int::from(rng.within(9)),
+                        Int::from(2 * s) * &d,
+                        Int::zero(),
+                    ],
+                    q: [Int::from(2) * &d, Int::zero(), Int::zero()],
+                    left: a,
+                    right: b,
+                    line: 0,
+                });
+            }
+            // The same as the fourth with large words in the coefficients.
             _ => {
                 let (s, f) = (if i % 2 == 0 { 7 } else { -7 }, 1 << 40);
                 arcs.extend(plain(
@@ -570,12 +624,15 @@ fn crowd(rng: &mut Rng, kind: u64, size: i64) -> Vec<SourceArc> {
     arcs
 }
 
+/// How many kinds of crowds there are.
+const KINDS: u64 = 10;
+
 #[test]
 fn crowded_faces_are_those_of_the_whole_arrangement() {
-    for round in 0..count(3_000).max(24) as u64 {
+    for round in 0..count(5_000).max(40) as u64 {
         let mut rng = Rng(round.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 7);
         let size = 18 + rng.below(8);
-        let arcs = crowd(&mut rng, round % 6, size);
+        let arcs = crowd(&mut rng, round % KINDS, size);
         let oracle = oracle_arcs(&arcs, &[]);
         for start in [
             (Rat::zero(), Rat::from(-1000)),
@@ -641,7 +698,7 @@ fn short_arcs_in_a_crowd_keep_their_ends() {
 /// ways are held against each other.
 #[test]
 fn large_crowds_walk_and_merge_alike() {
-    for kind in 0..6 {
+    for kind in 0..KINDS {
         let mut rng = Rng(kind + 99);
         let arcs = crowd(&mut rng, kind, 150);
         for start in [
@@ -656,6 +713,144 @@ fn large_crowds_walk_and_merge_alike() {
                     "kind {kind}, leaves of {leaf}"
                 );
             }
+        }
+    }
+}
+
+/// Points in and out of the face, and on it, as the whole arrangement has it: 10^5 of them in a full run.
+#[test]
+fn regions_hold_what_the_arrangement_says() {
+    const POINTS: i64 = 20;
+    let (mut inside, mut outside, mut on) = (0, 0, 0);
+    for round in 0..count(5_000).max(80) as u64 {
+        let mut rng = Rng(round.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 3);
+        let (arcs, uprights) = scene(&mut rng, (round % 8) as i64, 11);
+        let oracle = oracle_arcs(&arcs, &uprights);
+        let point = |rng: &mut Rng| (Rat::frac(rng.within(14), 5), Rat::frac(rng.within(14), 5));
+        // Near the middle, where the small faces are.
+        let start = (Rat::frac(rng.within(7), 4), Rat::frac(rng.within(7), 4));
+        let points: Vec<(Rat, Rat)> = (0..POINTS).map(|_| point(&mut rng)).collect();
+        let Some((_, want)) = arrangement_and_points(&oracle, &start, &points) else {
+            continue;
+        };
+        for (method, leaf) in [(Method::Walk, 1), (Method::Merge, 1)] {
+            let question = Question {
+                arcs: &arcs,
+                uprights: &uprights,
+                start: &start,
+                method,
+                leaf,
+            };
+            let mut region = question.region().unwrap();
+            for (p, want) in points.iter().zip(&want) {
+                let got = region.holds(p);
+                match want {
+                    // On an arc: on the boundary, or outside.
+                    None => assert_ne!(got, Some(true), "round {round}, {p:?}"),
+                    Some(w) => assert_eq!(got, Some(*w), "round {round}, {p:?}"),
+                }
+                match got {
+                    Some(true) => inside += 1,
+                    Some(false) => outside += 1,
+                    None => on += 1,
+                }
+            }
+        }
+    }
+    assert!(
+        inside > 100 && outside > 100 && on > 20,
+        "{inside} {outside} {on}"
+    );
+}
+
+/// Large crowds: the regions by walking and by merging hold the same points.
+#[test]
+fn large_regions_hold_the_same_points() {
+    for kind in 0..KINDS {
+        let mut rng = Rng(kind + 7);
+        let arcs = crowd(&mut rng, kind, 60);
+        let start = (Rat::frac(1, 7), Rat::frac(22, 7));
+        let mut regions = [Method::Walk, Method::Merge].map(|method| {
+            let question = Question {
+                arcs: &arcs,
+                uprights: &[],
+                start: &start,
+                method,
+                leaf: 8,
+            };
+            question.region().unwrap()
+        });
+        assert_eq!(
+            regions.each_ref().map(|r| (r.vertices(), r.edges()))[0],
+            regions.each_ref().map(|r| (r.vertices(), r.edges()))[1]
+        );
+        assert_eq!(regions[0].holds(&start), Some(true));
+        for _ in 0..count(10_000).max(100) {
+            let p = (
+                Rat::frac(rng.within(4000), 1000),
+                Rat::frac(rng.within(9000), 1000),
+            );
+            let [walked, merged] = regions.each_mut().map(|r| r.holds(&p));
+            assert_eq!(walked, merged, "kind {kind}, {p:?}");
+        }
+    }
+}
+
+/// What sweeps stumble over, counted by hand: half-edges and components of the unbounded face.
+#[test]
+fn sweep_killers_count_by_hand() {
+    let line = |t: [i64; 2], a: (i64, i64), b: (i64, i64)| {
+        arc([t[0], t[1], 0], [1, 0, 0], ratio(a.0, a.1), ratio(b.0, b.1)).unwrap()
+    };
+    let upright = |u: RootOf, low: i64, high: i64| Upright {
+        u,
+        low: [ints([low, 0, 0]), ints([1, 0, 0])],
+        high: [ints([high, 0, 0]), ints([1, 0, 0])],
+    };
+    let rays = vec![
+        line([0, 0], (0, 1), (1, 1)),
+        line([0, 1], (0, 1), (1, 1)),
+        line([0, -1], (0, 1), (1, 1)),
+    ];
+    let teeth = vec![
+        line([0, 0], (-2, 1), (2, 1)),
+        // Ends inside the first, from above and from below.
+        line([1, 1], (-1, 1), (1, 1)),
+        line([-1, 1], (0, 1), (1, 1)),
+    ];
+    let overlaps = vec![
+        line([0, 0], (-2, 1), (1, 1)),
+        line([0, 0], (-1, 1), (2, 1)),
+        line([0, 0], (0, 1), (1, 2)),
+    ];
+    let frame = vec![line([1, 0], (0, 1), (1, 1)), line([0, 0], (0, 1), (1, 1))];
+    let square = vec![upright(ratio(0, 1), 0, 1), upright(ratio(1, 1), 0, 1)];
+    let cross = vec![upright(ratio(1, 2), -1, 2), upright(ratio(1, 2), 0, 1)];
+    // The frame at infinity adds a component and four half-edges.
+    for (name, arcs, uprights, want) in [
+        ("three rays from one point", &rays, vec![], (6 + 4, 2)),
+        ("ends inside others", &teeth, vec![], (10 + 4, 2)),
+        (
+            "overlaps that begin mid-way",
+            &overlaps,
+            vec![],
+            (10 + 4, 2),
+        ),
+        ("a square from outside", &frame, square.clone(), (4 + 4, 2)),
+        // Verticals that overlap: cut at 0 and 1, where they meet the square too.
+        (
+            "a pole through a square",
+            &frame,
+            [square, cross].concat(),
+            (10 + 4, 2),
+        ),
+    ] {
+        let start = (Rat::zero(), Rat::from(9));
+        let oracle = oracle_arcs(arcs, &uprights);
+        assert_eq!(whole_arrangement(&oracle, &start), Some(want), "{name}");
+        for (method, leaf) in [(Method::Walk, 1), (Method::Merge, 1), (Method::Merge, 2)] {
+            let got = ask(arcs, &uprights, &start, method, leaf);
+            assert_eq!(got, Some(want), "{name}, {method:?} from {leaf}");
         }
     }
 }

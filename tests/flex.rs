@@ -254,6 +254,79 @@ fn safe_paths_never_collide_and_lose_little() {
     }
 }
 
+/// A block in a gap goes to the wall, wherever it starts and however round or odd the numbers are:
+/// rows of small integers (a distance of 1, say) must not lose their room to rounding.
+#[test]
+fn safe_blocks_reach_the_wall() {
+    let mut seed = 5i64;
+    let mut draw = |n: i64| {
+        seed = (seed * 1_103_515_245 + 12_345) & 0x7fff_ffff;
+        seed / 65_536 % n
+    };
+    let mut cases = vec![
+        (r(11, 5), r(11, 10)),
+        (r(9, 4), r(9, 8)),
+        (r(5, 2), r(5, 4)),
+    ];
+    for _ in 0..20 + common::count(100) {
+        let gap = r(2, 1) + r(1 + draw(60), 60 + draw(60));
+        let room = &gap - &r(2, 1);
+        let start = r(1, 1) + &room * &r(draw(7), 7);
+        cases.push((gap, start));
+    }
+    for (gap, start) in cases {
+        let wall = |name: &str, x0: Rat, x1: Rat| Body {
+            name: name.to_owned(),
+            vertices: vec![
+                v(x0.clone(), Rat::zero()),
+                v(x1.clone(), Rat::zero()),
+                v(x1, r(4, 1)),
+                v(x0, r(4, 1)),
+            ],
+            position: Vec2::default(),
+            tan_half: Rat::zero(),
+            hold: Hold::Fixed,
+        };
+        let mut block = rectangle("block", [-10, -10, 10, 10], Hold::Free);
+        block.position = v(start.clone(), r(2, 1));
+        let right = &gap + &r(3, 1);
+        let bodies = vec![
+            wall("left", r(-3, 1), Rat::zero()),
+            wall("right", gap.clone(), right),
+            block,
+        ];
+        let mut s = plain(bodies, vec![moves(2, 1, 0)]);
+        s.epsilon = r(6, 1);
+        s.step.path = Path::Safe;
+        let room = &gap - &r(1, 1) - &start;
+        let flexed = flex(&s, &FlexOptions::default());
+        assert_eq!(flexed.ending, Ending::Converged, "{gap} {start}");
+        assert!(flexed.displacement <= room, "{gap} {start}");
+        let lost = &room - &flexed.displacement;
+        assert!(lost < r(1, 100_000), "{gap} {start}: {lost} of {room}");
+    }
+}
+
+/// The whole run, too, does not depend on where a structure stands: only roundings differ.
+#[test]
+fn runs_do_not_depend_on_where_a_structure_stands() {
+    for (family, bodies) in [("wall", 9), ("jit", 6), ("grid", 12)] {
+        let s = generate(family, bodies, 3).unwrap();
+        let wanted = flex(&s, &FlexOptions::default());
+        let moved = carried(&s, &r(2, 7), &v(r(-31, 3), r(5, 1)));
+        let found = flex(&moved, &FlexOptions::default());
+        assert_eq!(wanted.ending, Ending::Converged, "{family}");
+        assert_eq!(found.ending, Ending::Converged, "{family}");
+        let off = (&wanted.displacement - &found.displacement).abs();
+        assert!(
+            off <= &wanted.displacement * &r(1, 10_000),
+            "{family}: {} {}",
+            wanted.displacement,
+            found.displacement
+        );
+    }
+}
+
 /// Up to the first contact no bodies overlap; just after it the two that it names do.
 #[test]
 fn the_first_contact_is_where_overlap_begins() {

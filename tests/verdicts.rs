@@ -389,6 +389,85 @@ fn peaks_of_random_designs_hold_against_samples() {
     assert!(met > 0);
 }
 
+/// A scene in another unit of length, with the forces that go with it.
+fn in_unit(s: &Scene, unit: &Rat) -> Scene {
+    let mut s = s.clone();
+    let to = |v: &mut Vec2| *v = v.scale(unit);
+    for o in &mut s.obstacles {
+        o.vertices.iter_mut().for_each(to);
+        o.holes.iter_mut().flatten().for_each(to);
+    }
+    if let Some(r) = &mut s.root {
+        r.vertices.iter_mut().for_each(to);
+        r.reference.iter_mut().for_each(to);
+    }
+    for p in &mut s.pawls {
+        p.vertices.iter_mut().for_each(to);
+        to(&mut p.hinge);
+    }
+    for m in &mut s.motions {
+        if let Motion::Translate { duration, .. } = m {
+            duration.iter_mut().for_each(|d| *d = &*d * unit);
+        }
+    }
+    if let Some(c) = &mut s.classify {
+        c.force_limit.iter_mut().for_each(|f| *f = &*f / unit);
+        c.escape_distance.iter_mut().for_each(|d| *d = &*d * unit);
+    }
+    s
+}
+
+/// A unit of length is none of the verdict's business, also far past the doubles.
+#[test]
+fn verdicts_mind_no_unit() {
+    let text = |name: &str| {
+        let path = format!("{}/tests/data/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(path).unwrap();
+        read_scene(name, &text).unwrap().scene().clone()
+    };
+    let mut scenes = vec![text("two-pawls")];
+    // The circle of directions in numbers so long takes minutes.
+    if count(100) > 1 {
+        scenes.push(text("total-fig7e"));
+    }
+    scenes.extend((0..count(200) as u64).map(|k| hook(17_000_000 + world::first_seed() + k)));
+    let far = Rat::from(2).pow(600);
+    for s in scenes {
+        let ask = Ask {
+            critical: true,
+            ..Ask::default()
+        };
+        let told = |s: &Scene| {
+            let d = classify(s, &ask).unwrap();
+            let mu = d.critical_friction.map(|n| n.value);
+            (d.class, d.extent, d.total, d.undecided_width, mu)
+        };
+        let here = told(&s);
+        for unit in [far.clone(), far.recip()] {
+            let there = in_unit(&s, &unit);
+            assert_eq!(told(&there), here, "{}", s.name);
+            let peak = |s: &Scene| {
+                let mut s = s.clone();
+                s.pawls.iter_mut().for_each(|p| {
+                    p.stiffness.get_or_insert(Rat::from(7));
+                });
+                forces(&s, &Wish::default(), &Ask::default()).unwrap().peak
+            };
+            let [a, b] = [peak(&s), peak(&there)].map(|p| match p.unwrap().force {
+                Bound::Within { lo, hi } => Some([lo, hi].map(|t| t.parse::<Rat>().unwrap())),
+                Bound::Unbounded(_) => None,
+            });
+            match (a, b) {
+                (Some(a), Some(b)) => {
+                    let b = b.map(|f| f * &unit);
+                    assert!(a[0] <= b[1] && b[0] <= a[1], "{}", s.name);
+                }
+                (a, b) => assert_eq!(a.is_some(), b.is_some(), "{}", s.name),
+            }
+        }
+    }
+}
+
 /// Writes a random hook as a scene, to look at: `TEST_SEED=7000007 cargo test … -- --ignored hook_as`.
 #[test]
 #[ignore = "a tool"]

@@ -19,325 +19,17 @@
 //! so if no cell is left before the pawl is out, *no* motion of the arc gets out. Nothing is
 //! claimed otherwise.
 
-use super::escape::{Ground, Start};
-use crate::contact::{PawlShape, Ring};
-use crate::geometry::Vec2;
-use crate::number::{Interval, Rat};
-use std::cell::Cell;
+use super::field::{
+    Body, Directions, Field, Model, Point, Side, cross, dot, minus, negative, positive,
+};
+use crate::number::Interval;
 use std::collections::BTreeMap;
-
-/// What is in the model of a proof.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) enum Model {
-    /// Contacts slide freely.
-    Shapes,
-    /// Contacts stick.
-    Friction,
-    /// Contacts stick, and give way only to less than the limiting force.
-    Force,
-}
-
-type Point = [Interval; 2];
-
-fn point(v: &Vec2) -> Point {
-    [v.x.interval(), v.y.interval()]
-}
-
-fn dot(a: &Point, b: &Point) -> Interval {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn cross(a: &Point, b: &Point) -> Interval {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn minus(a: &Point, b: &Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn positive(i: Interval) -> bool {
-    i.lo > 0.0
-}
-
-fn negative(i: Interval) -> bool {
-    i.hi < 0.0
-}
-
-/// One edge of a ring with its begin vertex, in intervals.
-struct Side {
-    at: Point,
-    next: usize,
-    prev: usize,
-    along: Point,
-    normal: Point,
-    /// normal·at: the edge's line.
-    offset: Interval,
-    convex: bool,
-    length2: Interval,
-    normal_length: Interval,
-}
-
-fn sides(ring: &Ring) -> Vec<Side> {
-    (0..ring.len())
-        .map(|i| {
-            let (at, n) = (&ring.vertices[i], &ring.normals[i]);
-            let along = &ring.vertices[ring.next(i)] - at;
-            Side {
-                at: point(at),
-                next: ring.next(i),
-                prev: ring.prev(i),
-                along: point(&along),
-                normal: point(n),
-                offset: n.dot(at).interval(),
-                convex: ring.convex[i],
-                length2: along.norm2().interval(),
-                normal_length: n.norm2().interval().sqrt(),
-            }
-        })
-        .collect()
-}
-
-/// An arc of directions as a box of unit vectors.
-pub(super) type Directions = Point;
-
-/// All obstacles' rings, the root and the pawls, in intervals.
-pub(super) struct Field {
-    rings: Vec<Vec<Side>>,
-    root: Option<Vec<Side>>,
-    pawls: Vec<Body>,
-    /// Cells looked at so far, times the corners in view.
-    spent: Cell<u64>,
-}
-
-/// How much a cover may cost before the rest is left undecided; the paper's Fig. 5, extended,
-/// takes a few hundredths of it.
-const WORK: u64 = 2_000_000_000;
-
-struct Body {
-    sides: Vec<Side>,
-    /// The hinge where the ways out begin.
-    hinge: Point,
-    reach: f64,
-    start: (i64, Interval),
-    limits: Option<[Interval; 2]>,
-    friction: Interval,
-    /// k·√(1 + μ²) and the limiting force.
-    push: Option<(Interval, Interval)>,
-}
-
-/// How fine a proof is to be.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Grain {
-    /// Length of a slab, at least.
-    pub(super) step: f64,
-    /// A slab may be as long as this part of the time passed.
-    pub(super) spread: f64,
-    /// When to give up.
-    pub(super) until: f64,
-    /// When the time for the proof is up.
-    pub(super) deadline: Option<std::time::Instant>,
-}
-
-impl Field {
-    pub(super) fn new(ground: &Ground<'_>, start: &Start) -> Field {
-        let scene = ground.scene;
-        let mu = scene.friction.clone().unwrap_or_else(Rat::zero);
-        let limit = scene.classify.as_ref().and_then(|c| c.force_limit.clone());
-        let body = |i: usize, shape: &PawlShape| {
-            let pawl = &scene.pawls[i];
-            let reach2 = shape.ring.vertices.iter().map(|a| a.norm2()).max();
-            let push = pawl.stiffness.as_ref().zip(limit.as_ref()).map(|(k, f)| {
-                let scale = (k.square() * (Rat::one() + mu.square())).interval().sqrt();
-                (scale, f.interval())
-            });
-            Body {
-                sides: sides(&shape.ring),
-                hinge: point(&(&pawl.hinge + &start.offset)),
-                reach: reach2.unwrap_or_default().interval().sqrt().hi,
-                start: (start.angles[i].half_turn, start.angles[i].x.interval()),
-                limits: pawl
-                    .limits
-                    .as_ref()
-                    .map(|(a, b)| [a.interval(), b.interval()]),
-                friction: mu.interval(),
-                push,
-            }
-        };
-        Field {
-            rings: ground
-                .obstacles
-                .iter()
-                .flat_map(|o| &o.rings)
-                .map(sides)
-                .collect(),
-            root: scene.root.as_ref().map(|r| {
-                let moved = r.vertices.iter().map(|p| p + &start.offset).collect();
-                sides(&Ring::new(moved, false))
-            }),
-            pawls: ground
-                .shapes
-                .iter()
-                .enumerate()
-                .map(|(i, s)| body(i, s))
-                .collect(),
-            spent: Cell::new(0),
-        }
-    }
-
-    /// The pawl that reaches farthest, for choosing a grain.
-    pub(super) fn reach(&self) -> f64 {
-        self.pawls.iter().map(|p| p.reach).fold(0.0, f64::max)
-    }
-
-    /// Whether no motion in one of the directions gets past `grain.until`: some pawl, or the
-    /// root, is shown to be blocked before.
-    pub(super) fn blocked(&self, w: &Directions, model: Model, grain: &Grain) -> bool {
-        let root = self.root_blocked(w, grain);
-        self.pawls
-            .iter()
-            .any(|body| self.pawl_blocked(body, w, model, grain, root))
-    }
-
-    /// A time from which on the root collides in every direction, at the grain's steps: the
-    /// begin of the first slab that is blocked throughout.
-    fn root_blocked(&self, w: &Directions, grain: &Grain) -> f64 {
-        let Some(root) = &self.root else {
-            return f64::INFINITY;
-        };
-        for slab in Slabs::new(grain) {
-            let d = [slab * w[0], slab * w[1]];
-            let still = [Interval::point(1.0), Interval::point(0.0)];
-            if self
-                .rings
-                .iter()
-                .any(|ring| crosses(root, ring, &d, &still))
-            {
-                return slab.lo;
-            }
-        }
-        f64::INFINITY
-    }
-
-    fn pawl_blocked(
-        &self,
-        body: &Body,
-        w: &Directions,
-        model: Model,
-        grain: &Grain,
-        root: f64,
-    ) -> bool {
-        let per_half_turn = (3.2 * body.reach / grain.step).clamp(15.0, 4000.0) as i64 | 1;
-        let grid = Grid { n: per_half_turn };
-        let mut live = grid.cells_of(body.start.0, body.start.1);
-        let mut first = true;
-        for slab in Slabs::new(grain) {
-            if slab.lo >= root {
-                return true;
-            }
-            if self.spent.get() > WORK
-                || grain
-                    .deadline
-                    .is_some_and(|d| std::time::Instant::now() >= d)
-            {
-                return false;
-            }
-            let mut view = View {
-                field: self,
-                body,
-                w,
-                model,
-                slab,
-                grid,
-                near: self.near(body, w, slab),
-                known: BTreeMap::new(),
-            };
-            match view.advance(&live, first) {
-                Some(next) => live = next,
-                None => return false,
-            }
-            first = false;
-            if live.is_empty() {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// The obstacle edges (ring, index) that the pawl can reach within a slab; a vertex comes with
-    /// both its edges.
-    fn near(&self, body: &Body, w: &Directions, slab: Interval) -> Vec<Vec<bool>> {
-        let reach = Interval {
-            lo: -body.reach,
-            hi: body.reach,
-        };
-        let span = |k: usize| body.hinge[k] + slab * w[k] + reach;
-        let (x, y) = (span(0), span(1));
-        self.rings
-            .iter()
-            .map(|ring| {
-                ring.iter()
-                    .map(|s| {
-                        let to = &ring[s.next].at;
-                        s.at[0].hull(&to[0]).meets(&x) && s.at[1].hull(&to[1]).meets(&y)
-                    })
-                    .collect()
-            })
-            .collect()
-    }
-}
-
-/// Whether some edge of a turned (`turn` = (cos, sin)) and displaced body properly crosses an edge
-/// of a ring throughout.
-fn crosses(body: &[Side], ring: &[Side], shift: &Point, turn: &Point) -> bool {
-    // Signs of body vertices against ring edges, and of ring vertices against body edges.
-    let vertex = |b: &Side, r: &Side| {
-        let turned = dot(&b.at, &r.normal) * turn[0] + cross(&b.at, &r.normal) * turn[1];
-        turned + dot(shift, &r.normal) - r.offset
-    };
-    let edge = |b: &Side, r: &Side| {
-        let q = minus(&r.at, shift);
-        dot(&b.normal, &q) * turn[0] + cross(&b.normal, &q) * turn[1] - b.offset
-    };
-    let apart = |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
-    ring.iter().any(|r| {
-        body.iter().any(|b| {
-            apart(vertex(b, r), vertex(&body[b.next], r))
-                && apart(edge(b, r), edge(b, &ring[r.next]))
-        })
-    })
-}
-
-/// Consecutive slabs of time from 0 to the grain's end.
-struct Slabs {
-    t: f64,
-    grain: Grain,
-}
-
-impl Slabs {
-    fn new(grain: &Grain) -> Slabs {
-        Slabs {
-            t: 0.0,
-            grain: *grain,
-        }
-    }
-}
-
-impl Iterator for Slabs {
-    type Item = Interval;
-    fn next(&mut self) -> Option<Interval> {
-        let lo = self.t;
-        let hi = lo + self.grain.step.max(lo * self.grain.spread);
-        self.t = hi;
-        // Neighbouring slabs share their common instant; the last one ends before the end.
-        (hi <= self.grain.until && hi > lo).then_some(Interval { lo, hi })
-    }
-}
 
 /// Orientation in cells: n (odd) a half-turn, numbered along the covering line; θ = 0 is inside
 /// cell (n − 1)/2 of half-turn 0, which is numbered 0.
 #[derive(Clone, Copy)]
-struct Grid {
-    n: i64,
+pub(super) struct Grid {
+    pub(super) n: i64,
 }
 
 impl Grid {
@@ -349,7 +41,7 @@ impl Grid {
         let at = |k: i64| Interval::point((2 * k - self.n) as f64) / Interval::point(self.n as f64);
         at(i).hull(&at(i + 1))
     }
-    fn cells_of(self, half_turn: i64, x: Interval) -> Vec<i64> {
+    pub(super) fn cells_of(self, half_turn: i64, x: Interval) -> Vec<i64> {
         let base = half_turn * self.n - (self.n - 1) / 2;
         (base - 1..=base + self.n)
             .filter(|&c| {
@@ -402,7 +94,7 @@ impl Grid {
 
 /// What is known of a cell.
 #[derive(Clone, Copy)]
-struct Known {
+pub(super) struct Known {
     blocked: bool,
     /// A contact may hold a pawl there, upper side and lower side of rest.
     holds: bool,
@@ -411,21 +103,21 @@ struct Known {
 /// How far round a pawl is followed, in half-turns.
 const TURNS: i64 = 4;
 
-struct View<'a> {
-    field: &'a Field,
-    body: &'a Body,
-    w: &'a Directions,
-    model: Model,
-    slab: Interval,
-    grid: Grid,
-    near: Vec<Vec<bool>>,
-    known: BTreeMap<i64, Known>,
+pub(super) struct View<'a> {
+    pub(super) field: &'a Field,
+    pub(super) body: &'a Body,
+    pub(super) w: &'a Directions,
+    pub(super) model: Model,
+    pub(super) slab: Interval,
+    pub(super) grid: Grid,
+    pub(super) near: Vec<Vec<bool>>,
+    pub(super) known: BTreeMap<i64, Known>,
 }
 
 impl View<'_> {
     /// The cells in which a pawl can be during the slab, from those of the slab before; None past
     /// the turns that are followed.
-    fn advance(&mut self, before: &[i64], first: bool) -> Option<Vec<i64>> {
+    pub(super) fn advance(&mut self, before: &[i64], first: bool) -> Option<Vec<i64>> {
         let mut live: BTreeMap<i64, ()> = BTreeMap::new();
         let mut queue: Vec<i64> = Vec::new();
         for &c in before {

@@ -2,7 +2,7 @@
 
 use super::bound::Bound;
 use super::classify::{Ask, Direction, Relative, Verdict, relative};
-use super::escape::{Ground, lasting};
+use super::escape::{Ground, just_past, lasting};
 use super::peak::Peak;
 use super::total::{Arc, Flip, Sample, Total, total};
 use crate::contact::{Contact, ContactKind};
@@ -263,12 +263,15 @@ pub fn classify_with_way(
 /// A rational duration in which a direction's motion has run its course.
 fn run_time(d: &Direction) -> Rat {
     let end = &d.run.outcome.time;
-    match end.as_rat() {
-        // A little longer, where it ends for another reason than its length.
-        Some(t) if d.run.outcome.kind == OutcomeKind::Completed => t.clone(),
-        Some(t) => t + &Rat::one(),
-        None if d.run.outcome.kind == OutcomeKind::Completed => Rat::from_f64(end.interval().hi),
-        None => Rat::from_f64(end.interval().hi) + Rat::frac(1, 1024),
+    let lasts = match end.as_rat() {
+        Some(t) => t.clone(),
+        None => just_past(end.exact()),
+    };
+    // A little longer, where it ends for another reason than its length.
+    match d.run.outcome.kind {
+        OutcomeKind::Completed => lasts,
+        _ if lasts.sign() > 0 => lasts * Rat::frac(17, 16),
+        _ => Rat::one(),
     }
 }
 

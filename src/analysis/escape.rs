@@ -12,6 +12,7 @@
 use super::classify::Ask;
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
+use crate::kernel::Certified;
 use crate::motion::phase::{Run, Setting, run};
 use crate::motion::root::first_collision;
 use crate::motion::solids::Solids;
@@ -19,7 +20,7 @@ use crate::motion::{
     Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
 };
 use crate::number::filter::with_filter;
-use crate::number::{Int, Poly, Rat};
+use crate::number::{Algebraic, Int, Poly, Rat};
 use crate::scene::{Motion, Scene};
 use crate::slice::{Slice, Time};
 use std::time::Instant;
@@ -82,7 +83,19 @@ pub fn lasting(velocity: &Vec2, distance2: &Rat) -> (Rat, Time) {
     }
     let roots = Poly::new(vec![-n, Int::zero(), d.clone()]).real_roots();
     let exact = roots.last().cloned().unwrap_or_else(|| Rat::zero().into());
-    (exact.enclosure(16).1, Time::at(exact))
+    (just_past(&exact), Time::at(exact))
+}
+
+/// A rational number at least as large as a positive one, and larger by less than 2⁻¹⁶ of it.
+pub(super) fn just_past(exact: &Algebraic) -> Rat {
+    let mut bits = 16;
+    loop {
+        let (lo, hi) = exact.enclosure(bits);
+        if lo.sign() > 0 && (&hi - &lo) * Rat::from(1 << 16) <= lo {
+            return hi;
+        }
+        bits *= 2;
+    }
 }
 
 /// A scene prepared for many ways out.
@@ -141,20 +154,21 @@ impl<'a> Ground<'a> {
         distance2: &Rat,
         friction: Option<&Rat>,
     ) -> Trajectory {
-        let run = || self.run(start, velocity, distance2, friction);
         if self.exact {
+            let run = || self.run::<false>(start, velocity, distance2, friction);
             return with_filter(false, run).published();
         }
-        run()
+        self.run::<true>(start, velocity, distance2, friction)
     }
 
-    fn run(
+    /// With certified doubles, or without.
+    fn run<const FILTER: bool>(
         &self,
         start: &Start,
         velocity: &Vec2,
         distance2: &Rat,
         friction: Option<&Rat>,
-    ) -> Trajectory {
+    ) -> Trajectory<Certified<FILTER>> {
         let (duration, end) = lasting(velocity, distance2);
         let stop = || self.late();
         let collision = self.scene.root.as_ref().and_then(|root| {
@@ -166,7 +180,7 @@ impl<'a> Ground<'a> {
                 Some(&duration),
             )
         });
-        let runs: Vec<Run> = self
+        let runs: Vec<Run<Certified<FILTER>>> = self
             .scene
             .pawls
             .iter()
@@ -191,7 +205,11 @@ impl<'a> Ground<'a> {
                     known: None,
                     face: crate::face::Method::Auto,
                 };
-                run(&slice, &set, &start.angles[i], &start.touching[i])
+                let angle = Angle {
+                    half_turn: start.angles[i].half_turn,
+                    x: start.angles[i].x.clone(),
+                };
+                run(&slice, &set, &angle, &start.touching[i])
             })
             .collect();
         let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
@@ -240,13 +258,13 @@ impl<'a> Ground<'a> {
 }
 
 /// A run as a history that ends at `cut`.
-fn trace(
-    run: Run,
+fn trace<const FILTER: bool>(
+    run: Run<Certified<FILTER>>,
     name: &str,
     cut: &Time,
     struck: Option<&Vec<crate::motion::RootContact>>,
-) -> PawlTrace {
-    let mut events: Vec<Event> = run.events;
+) -> PawlTrace<Certified<FILTER>> {
+    let mut events: Vec<Event<Certified<FILTER>>> = run.events;
     events.retain(|e| e.time <= *cut);
     if let Some(contacts) = struck {
         events.push(Event {
@@ -259,7 +277,7 @@ fn trace(
             root_contacts: contacts.clone(),
         });
     }
-    let mut segments: Vec<Segment> = run.segments;
+    let mut segments: Vec<Segment<Certified<FILTER>>> = run.segments;
     segments.retain(|s| s.from < *cut);
     for s in &mut segments {
         if s.to > *cut {

@@ -16,6 +16,7 @@ pub mod document;
 pub mod draw;
 mod drive;
 pub mod escape;
+mod field;
 pub mod fix;
 mod force_document;
 pub mod forces;

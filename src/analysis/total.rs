@@ -6,13 +6,14 @@
 //! certified intervals. An arc that resists is halved, down to a bound on depth and time. One exact
 //! way out settles the question at once: the class is then `none`.
 
-use super::cells::{Directions, Field, Grain, Model};
 use super::classify::{Verdict, direction};
 use super::escape::{Ground, Start};
+use super::field::{Directions, Field, Grain, Model};
 use crate::geometry::Vec2;
 use crate::motion::OutcomeKind;
-use crate::number::Rat;
+use crate::number::{Int, Rat};
 use crate::scene::Scene;
+use crate::slice::Time;
 
 /// An arc of directions: from the quarter-turn `quarter` on, tan(φ/2) from `from` to `to`, in
 /// [0, 1].
@@ -136,6 +137,21 @@ pub fn clear_distance(scene: &Scene, start: &Start) -> Rat {
     span(|p| &p.x) + span(|p| &p.y)
 }
 
+/// A unit of length in which doubles hold a scene of this size: 1 if they do anyway.
+fn unit(distance: &Rat) -> Rat {
+    let [n, d] = [distance.numer(), distance.denom()].map(Int::bits);
+    let two = Rat::from(2);
+    match u32::try_from(n.abs_diff(d)) {
+        Ok(e) if e > 100 && n > d => two.pow(e).recip(),
+        Ok(e) if e > 100 => two.pow(e),
+        _ => Rat::one(),
+    }
+}
+
+/// The most directions that are decided by themselves for a cover: a scene whose arcs nowhere
+/// prove would else ask for a quarter of a million.
+const MOST_SAMPLES: usize = 20_000;
+
 /// How often an arc may be halved: a quarter's 2⁻¹⁶ is about 10⁻⁵ radians.
 const DEPTH: u32 = 16;
 
@@ -147,12 +163,14 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         .as_ref()
         .and_then(|c| c.escape_distance.clone());
     let distance = asked.unwrap_or_else(|| clear_distance(scene, start));
+    let unit = unit(&distance);
     let mut search = Search {
         ground,
         start,
         distance2: distance.square(),
-        distance: distance.interval().lo,
-        field: Field::new(ground, start),
+        distance: (&distance * &unit).interval().lo,
+        field: Field::new(ground, start, &unit),
+        unit,
         weakest: known,
         cover: Vec::new(),
         escape: None,
@@ -234,7 +252,9 @@ struct Search<'a> {
     ground: &'a Ground<'a>,
     start: &'a Start,
     distance2: Rat,
+    /// In the field's unit, as all double times here.
     distance: f64,
+    unit: Rat,
     field: Field,
     weakest: Option<Verdict>,
     cover: Vec<Arc>,
@@ -415,16 +435,28 @@ impl Search<'_> {
         }
         let time = match (&d.peak, d.verdict) {
             (Some((p, _)), Verdict::Force) => match &p.when {
-                super::peak::Instant::At(t) => t.interval().hi,
-                super::peak::Instant::Between(_, t) => t.interval().hi,
+                super::peak::Instant::At(t) => self.in_unit(t),
+                super::peak::Instant::Between(_, t) => (t * &self.unit).interval().hi,
             },
-            _ => d.run.outcome.time.interval().hi,
+            _ => self.in_unit(&d.run.outcome.time),
         };
         Some((d.verdict, time, (d.run.outcome.kind, d.run.outcome.pawl)))
     }
 
+    /// An instant of a motion at unit speed, rounded up.
+    fn in_unit(&self, t: &Time) -> f64 {
+        if self.unit == Rat::one() {
+            return t.interval().hi;
+        }
+        t.affine(&Rat::zero(), &self.unit).interval().hi
+    }
+
     fn cover(&mut self, mut arc: Arc, depth: u32) {
         if self.escape.is_some() {
+            return;
+        }
+        if self.samples.len() > MOST_SAMPLES {
+            self.cover.push(arc);
             return;
         }
         let Some((verdict, time, middle)) = self.sample(arc.quarter, &arc.middle()) else {

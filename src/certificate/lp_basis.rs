@@ -30,6 +30,8 @@ const SECOND: u64 = 2_147_483_629;
 const NONE: u32 = u32::MAX;
 /// Bits of a digit, rounded down.
 const DIGIT: u64 = 30;
+/// Components of a solution that are worked on together.
+const BLOCK: usize = 64;
 /// Bits that the largest row or column sum of sizes may have.
 const NORM: u64 = 2000;
 
@@ -604,29 +606,34 @@ impl Window {
     /// Widens to all digits there are.
     fn extend(&mut self, digits: &[Vec<u32>]) {
         let size = digits.first().map_or(0, Vec::len);
-        for top in self.low + self.sums.len()..digits.len() {
-            let mut sum = vec![0u128; size];
-            // Four products of two digits fit a word.
-            let take = self.denominator.len().min(top + 1);
-            for (group, d) in self.denominator[..take].chunks(4).enumerate() {
-                let at = top - 4 * group;
-                if let [a, b, c, e] = *d {
-                    let (w, x) = (&digits[at], &digits[at - 1]);
-                    let (y, z) = (&digits[at - 2], &digits[at - 3]);
-                    for (j, s) in sum.iter_mut().enumerate() {
-                        let first = a * u64::from(w[j]) + b * u64::from(x[j]);
-                        let second = c * u64::from(y[j]) + e * u64::from(z[j]);
-                        *s += u128::from(first + second);
-                    }
-                } else {
-                    for (i, &d) in d.iter().enumerate() {
-                        for (s, &x) in sum.iter_mut().zip(&digits[at - i]) {
-                            *s += u128::from(d * u64::from(x));
+        let done = self.low + self.sums.len();
+        self.sums.resize(digits.len() - self.low, vec![0; size]);
+        // Block by block, so that the digits of a block stay in the cache.
+        for start in (0..size).step_by(BLOCK) {
+            let block = start..(start + BLOCK).min(size);
+            for top in done..digits.len() {
+                let sum = &mut self.sums[top - self.low][block.clone()];
+                let x = |at: usize| &digits[at][block.clone()];
+                // Four products of two digits fit a word.
+                let take = self.denominator.len().min(top + 1);
+                for (group, d) in self.denominator[..take].chunks(4).enumerate() {
+                    let at = top - 4 * group;
+                    if let [a, b, c, e] = *d {
+                        let (w, x, y, z) = (x(at), x(at - 1), x(at - 2), x(at - 3));
+                        for (j, s) in sum.iter_mut().enumerate() {
+                            let first = a * u64::from(w[j]) + b * u64::from(x[j]);
+                            let second = c * u64::from(y[j]) + e * u64::from(z[j]);
+                            *s += u128::from(first + second);
+                        }
+                    } else {
+                        for (i, &d) in d.iter().enumerate() {
+                            for (s, &x) in sum.iter_mut().zip(x(at - i)) {
+                                *s += u128::from(d * u64::from(x));
+                            }
                         }
                     }
                 }
             }
-            self.sums.push(sum);
         }
     }
 

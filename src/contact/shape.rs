@@ -15,8 +15,8 @@ use std::sync::{Arc, OnceLock};
 /// How many edges are made at a time.
 const PART: usize = 16;
 
-/// The normals of a handful of edges.
-type Part<R> = Box<[Vec2<R>]>;
+/// The normals of some edges, made together.
+type Part<R> = OnceLock<Box<[Vec2<R>]>>;
 
 /// What is known of the edges of a ring, and what can be made of them.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ struct Edges<R> {
     /// Of a ring of enclosures: for each edge whether its ends have equal x, equal y. Differences of enclosures do not
     /// show it, and much of what happens by force is due to edges that run along an axis.
     flat: Box<[[bool; 2]]>,
-    normals: Box<[OnceLock<Part<R>>]>,
+    normals: Box<[Part<R>]>,
     /// A bit for each vertex.
     convex: Box<[OnceLock<u16>]>,
 }

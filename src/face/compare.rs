@@ -11,6 +11,13 @@ use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
+/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
+#[derive(Clone, Copy)]
+pub(super) struct Core {
+    pub(super) middle: f64,
+    pub(super) half: f64,
+}
+
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
     above: [Approx; 5],
@@ -267,34 +274,23 @@ impl Kernel {
         }
     }
 
-    /// Whether the two surely meet nowhere over [lo, hi] but at the points over `known`, where they do.
+    /// Whether the two surely meet nowhere over [lo, hi] but at the points over `known`, where h vanishes at least
+    /// as often as said.
     pub(crate) fn miss_beside(
         &self,
         c: CurveId,
         d: CurveId,
         lo: f64,
         hi: f64,
-        known: &[NumId],
+        known: &[(NumId, usize)],
     ) -> bool {
-        let (c, d) = (c.min(d), c.max(d));
-        let mut g = self.diff(c, d);
+        let mut g = self.diff(c.min(d), c.max(d));
         let Some(mut n) = (0..5).rev().find(|&k| g[k].sign() != Some(0)) else {
             return false;
         };
-        for &x in known {
-            if n > 0 {
+        for &(x, order) in known {
+            for _ in 0..order.min(n) {
                 deflate(&mut g, &mut n, self.approx(x));
-            }
-        }
-        if one_sign(&g[..=n], lo, hi) {
-            return true;
-        }
-        // Perhaps roots of higher order.
-        for &x in known {
-            for _ in 1..self.contact(c, d, x) {
-                if n > 0 {
-                    deflate(&mut g, &mut n, self.approx(x));
-                }
             }
         }
         one_sign(&g[..=n], lo, hi)
@@ -339,12 +335,14 @@ impl Kernel {
     }
 
     /// (c − d)·Q_d over the product of u − x for the roots x of h, each as often as said: a polynomial over the
-    /// denominator of c.
+    /// denominator of c. With a core also divided by u − x in the middle of it, as if that were a root: what
+    /// remains is part of the errors, wherever u is not in the core.
     pub(super) fn blown_up(
         &self,
         c: CurveId,
         d: CurveId,
         at: &[(NumId, usize)],
+        core: Option<Core>,
     ) -> ([Approx; 5], [Approx; 5]) {
         let a = &self.curves[c as usize];
         let mut below = [Approx::default(); 5];
@@ -358,6 +356,10 @@ impl Kernel {
             for _ in 0..order {
                 deflate(&mut top, &mut n, self.approx(x));
             }
+        }
+        if let Some(core) = core {
+            let rest = deflate(&mut top, &mut n, Approx::exact(core.middle));
+            top[0].e += (rest.v.abs() + rest.e) / core.half * (1.0 + 1e-9);
         }
         (top, below)
     }
@@ -467,6 +469,21 @@ impl Kernel {
         Some(id)
     }
 
+    /// The double roots of h, if it has any and none of a higher order, and what is left of h without them. They
+    /// are roots of a polynomial of low degree, h's with its derivative, and so are named by it: all curves
+    /// that touch at one place share the name.
+    fn multiple_roots(&mut self, h: &Poly) -> Option<(Poly, Vec<NumId>)> {
+        let g = h.gcd(&h.derivative()).primitive();
+        let n = g.degree().filter(|n| (1..=2).contains(n))?;
+        let rest = h.div_exact(&g)?.div_exact(&g)?;
+        let m = [0, 1, 2].map(|i| g.coeff(i));
+        let mut ids = Vec::new();
+        for k in 0..n as u8 {
+            ids.extend(self.root(&m, k).ok());
+        }
+        Some((rest, ids))
+    }
+
     /// All real roots of h, exactly.
     #[cold]
     fn all_crossings(&mut self, c: CurveId, d: CurveId, out: &mut Vec<NumId>) {
@@ -475,7 +492,13 @@ impl Kernel {
             pair.complete = true;
             let before = pair.ids.clone();
             self.stats.pairs_exact += 1;
-            for r in self.diff_poly(c, d).real_roots() {
+            let mut h = self.diff_poly(c, d);
+            if let Some((rest, multiple)) = self.multiple_roots(&h) {
+                h = rest;
+                let ids = &mut self.pairs.entry((c, d)).or_default().ids;
+                ids.extend(multiple);
+            }
+            for r in h.real_roots() {
                 let i = r.interval();
                 let mut same = None;
                 for &id in &before {
@@ -485,15 +508,8 @@ impl Kernel {
                     }
                 }
                 if same.is_none() {
-                    let id = match r.known_rat() {
-                        // So that all that meet there share the name.
-                        Some(r) => self.rational(&r),
-                        None => {
-                            let id = self.add(i.lo, i.hi, Def::Cross(c, d));
-                            self.settle_value(id, r);
-                            id
-                        }
-                    };
+                    let id = self.add(i.lo, i.hi, Def::Cross(c, d));
+                    self.settle_value(id, r);
                     self.pairs.entry((c, d)).or_default().ids.push(id);
                 }
             }
@@ -525,9 +541,9 @@ where
     h
 }
 
-/// Divides by u − x, a factor; the degree n falls by one.
+/// Divides by u − x; the degree n falls by one. Returns what remains, which is zero for a factor.
 #[inline]
-fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
+fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) -> Approx {
     let mut carry = g[*n];
     for k in (0..*n).rev() {
         let below = g[k] + x * carry;
@@ -536,6 +552,7 @@ fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) {
     }
     g[*n] = Approx::default();
     *n -= 1;
+    carry
 }
 
 fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {

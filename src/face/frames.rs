@@ -27,8 +27,8 @@ pub(super) struct Frame {
 const LEVELS: [u32; 2] = [320, 1280];
 
 impl Kernel {
-    /// The order of two numbers by frames; None where these do not tell (equal numbers, above all).
-    pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId) -> Option<Ordering> {
+    /// The order of two numbers by frames of a level; None where these do not tell (equal numbers, above all).
+    pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId, level: usize) -> Option<Ordering> {
         // Those that were asked about before mostly are in one frame.
         if let (Some(&(f, a)), Some(&(g, b))) = (self.local.get(&x), self.local.get(&y))
             && f == g
@@ -36,25 +36,27 @@ impl Kernel {
         {
             return Some(o);
         }
-        for (level, &bits) in LEVELS.iter().enumerate() {
-            let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
-            let old = self.frame_near.get(&key).copied();
-            if let Some(f) = old {
-                if let Some(o) = self.cmp_from(x, y, f).or_else(|| self.are_owner(x, y, f)) {
-                    return Some(o);
-                }
-                if self.is_at(x, f) || self.is_at(y, f) {
-                    // Another frame there would not tell more.
-                    continue;
-                }
-            }
-            let f = self.new_frame(x, bits);
-            self.frame_near.insert(key, f);
-            if let Some(o) = self.cmp_from(x, y, f).or_else(|| self.are_owner(x, y, f)) {
-                return Some(o);
+        for id in [x, y] {
+            if let Some(&(f, _)) = self.local.get(&id)
+                && self.frames[f as usize].bits > u64::from(LEVELS[level])
+            {
+                return self.cmp_from(x, y, f);
             }
         }
-        None
+        let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
+        let old = self.frame_near.get(&key).copied();
+        if let Some(f) = old {
+            if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
+                return Some(o);
+            }
+            if self.is_at(x, f) || self.is_at(y, f) {
+                // Another frame there would not tell more.
+                return None;
+            }
+        }
+        let f = self.new_frame(x, LEVELS[level]);
+        self.frame_near.insert(key, f);
+        self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
     }
 
     /// Equal, if both are proven to be the number that a frame was made for, whose equation is known if it has one
@@ -127,7 +129,11 @@ impl Kernel {
                 let (r, s) = &self.framed[&(d, f)];
                 let value = p * s - r * q;
                 let bits = self.frames[f as usize].bits;
-                (scaled(&value, 4 * bits)?, self.full_difference(c, d))
+                let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
+                (
+                    scaled(&value, 4 * bits + scale)?,
+                    self.full_difference(c, d),
+                )
             }
             Def::Known => return None,
         };
@@ -171,7 +177,7 @@ fn at_frame(m: &[Int], frame: &Frame) -> Int {
 }
 
 /// v·2^-bits; None where that leaves the doubles.
-fn scaled(v: &Int, bits: u64) -> Option<Approx> {
+pub(super) fn scaled(v: &Int, bits: u64) -> Option<Approx> {
     if v.is_zero() {
         return Some(Approx::exact(0.0));
     }

@@ -7,7 +7,7 @@
 //! of curves, and numbers proven equal are united, so that the second question costs nothing.
 
 use super::approx::{Approx, horner};
-use super::frames::Frame;
+use super::frames::{Frame, scaled};
 use super::hash::FastMap;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
@@ -44,6 +44,9 @@ const SMALL: u64 = 1 << 60;
 /// Below this the coefficients of h stay below 2⁶³.
 const TINY: u64 = 1 << 29;
 
+/// Coefficients of more bits than this are scaled: h has twice as many, and is multiplied by other numbers too.
+const LONG: u64 = 256;
+
 pub(super) struct Curve {
     pub(super) p: [Approx; 3],
     pub(super) q: [Approx; 3],
@@ -52,6 +55,8 @@ pub(super) struct Curve {
     pub(super) den: u32,
     /// All coefficients are below `TINY`.
     pub(super) tiny: bool,
+    /// `p` and `q` enclose the coefficients times 2^-scale.
+    pub(super) scale: u64,
 }
 
 /// What a number is.
@@ -133,7 +138,18 @@ impl Kernel {
         if let Some(&id) = self.big_curve_ids.get(&key) {
             return Ok(id);
         }
-        let a: [Approx; 6] = std::array::from_fn(|i| Approx::from_interval(key[i].interval()));
+        // Long ones are scaled, so that products of two stay within the doubles.
+        let bits = key.iter().map(Int::bits).max().unwrap_or(0);
+        let scale = if bits > LONG { bits } else { 0 };
+        let a: [Approx; 6] = std::array::from_fn(|i| {
+            if scale == 0 {
+                return Approx::from_interval(key[i].interval());
+            }
+            scaled(&key[i], scale).unwrap_or(Approx {
+                v: 0.0,
+                e: 2f64.powi(-800),
+            })
+        });
         let id = self.curves.len() as CurveId;
         let next = (self.dens.len() + self.big_dens.len()) as u32;
         let den = Poly::new(key[3..].to_vec()).primitive();
@@ -147,6 +163,7 @@ impl Kernel {
             exact: Coeffs::Big(Box::new(key.clone())),
             den,
             tiny: false,
+            scale,
         });
         self.big_curve_ids.insert(key, id);
         Ok(id)
@@ -170,6 +187,7 @@ impl Kernel {
                 exact: Coeffs::Small(c),
                 den,
                 tiny: c.iter().all(|x| x.unsigned_abs() < TINY),
+                scale: 0,
             });
         }
         id
@@ -386,16 +404,39 @@ fn gcd(mut a: u64, mut b: u64) -> u64 {
     a
 }
 
+/// Whether the resultant of two quadratics (or what they degenerate to) is not zero modulo a prime.
+fn surely_coprime(p: &Poly, q: &Poly) -> bool {
+    const PRIME: u64 = 0xffff_ffff_ffff_ffc5;
+    let c: [u64; 6] =
+        std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) }.mod_u64(PRIME));
+    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64;
+    let minus = |a: u64, b: u64| {
+        let d = u128::from(a) + u128::from(PRIME) - u128::from(b);
+        (d % u128::from(PRIME)) as u64
+    };
+    let minor = |i: usize, j: usize| minus(times(c[i], c[3 + j]), times(c[j], c[3 + i]));
+    let res = minus(
+        times(minor(2, 0), minor(2, 0)),
+        times(minor(2, 1), minor(1, 0)),
+    );
+    let constant = |f: &Poly| f.degree() == Some(0);
+    constant(p) || constant(q) || res != 0
+}
+
 /// P/Q in lowest terms, without content, the last coefficient of Q positive.
 fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
     let one = || Poly::constant(Int::one());
     if p.is_zero() {
         return (Poly::zero(), one());
     }
-    let g = p.gcd(q);
     let (mut p, mut q) = (p.clone(), q.clone());
-    if let (Some(a), Some(b)) = (p.div_exact(&g), q.div_exact(&g))
-        && g.degree() != Some(0)
+    let g = if surely_coprime(&p, &q) {
+        one()
+    } else {
+        p.gcd(&q)
+    };
+    if g.degree() != Some(0)
+        && let (Some(a), Some(b)) = (p.div_exact(&g), q.div_exact(&g))
     {
         // Quotients come up to a factor; the leading coefficients give it back.
         let ratio =
@@ -412,6 +453,9 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
     } else {
         content
     };
+    if content.is_one() {
+        return (p, q);
+    }
     let unscale = |f: &Poly| Poly::new(f.coeffs().iter().map(|c| c.div_exact(&content)).collect());
     (unscale(&p), unscale(&q))
 }

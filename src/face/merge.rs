@@ -116,7 +116,10 @@ fn trace(
     }
     let face = extract(&mut t);
     #[cfg(debug_assertions)]
-    check(&face, k);
+    {
+        euler(&t);
+        check(&face, t.k);
+    }
     Ok(Some(face))
 }
 
@@ -251,6 +254,59 @@ fn extract(t: &mut Tracer<'_>) -> Face {
         });
     }
     face
+}
+
+/// Euler's relation of the boundary as a plane graph, V − E + F = 1 + C: the orbits of its half-edges, turned round
+/// each vertex by the order of the germs, are 2C − V + E, as many as if every component were alone.
+#[cfg(debug_assertions)]
+fn euler(t: &Tracer<'_>) {
+    let mut parent: Vec<u32> = (0..t.vertices.len() as u32).collect();
+    fn find(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    let mut seen = vec![false; t.vertices.len()];
+    for e in &t.edges {
+        let (a, b) = (find(&mut parent, e.low), find(&mut parent, e.high));
+        parent[a as usize] = b;
+        (seen[e.low as usize], seen[e.high as usize]) = (true, true);
+    }
+    let vertices = seen.iter().filter(|&&s| s).count();
+    let components = (0..t.vertices.len() as u32)
+        .filter(|&v| seen[v as usize] && parent[v as usize] == v)
+        .count();
+    // The half-edge 2e goes to the high end.
+    let mut walked = vec![false; 2 * t.edges.len()];
+    let mut orbits = 0;
+    for first in 0..walked.len() {
+        let mut at = first;
+        orbits += usize::from(!walked[first]);
+        while !walked[at] {
+            walked[at] = true;
+            let edge = &t.edges[at / 2];
+            let (w, back) = if at % 2 == 0 {
+                (edge.high, edge.germs[1])
+            } else {
+                (edge.low, edge.germs[0])
+            };
+            let vertex = &t.vertices[w as usize];
+            let (from, n) = (vertex.germs, vertex.germ_count);
+            let turn = (1..=n)
+                .map(|i| from + (back - from + n - i) % n)
+                .find(|&g| t.germs[g as usize].edge != NONE)
+                .expect("the germ itself has an edge");
+            let germ = t.germs[turn as usize];
+            at = 2 * germ.edge as usize + usize::from(!germ.dir.forward());
+        }
+    }
+    assert_eq!(
+        vertices + orbits,
+        t.edges.len() + 2 * components,
+        "Euler's relation"
+    );
 }
 
 /// The invariants of a boundary: every edge joins its points in order and lies on them, bounds the face on

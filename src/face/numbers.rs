@@ -8,6 +8,7 @@
 use super::approx::Approx;
 use super::compare::vanishes;
 use super::kernel::{Def, Defect, Kernel, Num, NumId};
+use crate::number::modular::gcd_degree_bound;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
 
@@ -165,13 +166,21 @@ impl Kernel {
             self.unite(x, y);
             return Ordering::Equal;
         }
-        if let Some(order) = self.cmp_in_frames(x, y) {
+        if let Some(order) = self.cmp_in_frames(x, y, 0) {
             return order;
         }
-        self.make_fine(x);
-        self.make_fine(y);
-        if let Some(order) = self.cells_apart(x, y) {
-            return order;
+        // Numbers with no common equation are not equal: worth telling apart by ever more digits.
+        let a = self.exact(x).defining_polynomial();
+        let b = self.exact(y).defining_polynomial();
+        if gcd_degree_bound(&a, &b) == Some(0) {
+            if let Some(order) = self.cmp_in_frames(x, y, 1) {
+                return order;
+            }
+            self.make_fine(x);
+            self.make_fine(y);
+            if let Some(order) = self.cells_apart(x, y) {
+                return order;
+            }
         }
         let (a, b) = (self.exact(x).clone(), self.exact(y).clone());
         let order = a.cmp(&b);
@@ -183,9 +192,18 @@ impl Kernel {
 
     /// The equation of low degree that a number is known to satisfy, in machine words.
     pub(super) fn equation(&self, x: NumId) -> Option<[i64; 3]> {
-        match self.nums[x as usize].def {
-            Def::Root(i) => Some(self.roots[i as usize].0),
-            _ => self.low.get(&x).copied(),
+        let mut x = x;
+        loop {
+            let n = &self.nums[x as usize];
+            let known = match n.def {
+                Def::Root(i) => Some(self.roots[i as usize].0),
+                _ => self.low.get(&x).copied(),
+            };
+            // What is known of an equal number will do.
+            if known.is_some() || n.parent == x {
+                return known;
+            }
+            x = n.parent;
         }
     }
 

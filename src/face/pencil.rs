@@ -8,6 +8,7 @@
 //! singular points; the quotients are exact because the common root is.)
 
 use super::approx::Approx;
+use super::compare::Core;
 use super::isolate::bernstein;
 use super::item::{Carrier, Item, NONE};
 use super::kernel::{CurveId, Kernel, NumId, in_parts};
@@ -21,6 +22,8 @@ struct Chart {
     reference: CurveId,
     /// The points and how often each was divided by; in all at most four.
     at: Vec<(NumId, usize)>,
+    /// Where they pass near one another but not through one point.
+    core: Option<Core>,
 }
 
 /// Arcs through a point, in the plane where it is blown up.
@@ -28,6 +31,7 @@ pub(super) struct Pencil {
     chart: Chart,
     /// The members there.
     tree: Tree,
+    count: usize,
     /// The index of all others, if the members are a large part of all items.
     pub(super) rest: Option<Tree>,
 }
@@ -38,7 +42,7 @@ const PIECES: usize = 4;
 impl Chart {
     /// A hull of a curve over [a, b] in this plane.
     fn hull(&self, k: &Kernel, c: CurveId, a: f64, b: f64) -> Hull {
-        let (top, below) = k.blown_up(c, self.reference, &self.at);
+        let (top, below) = k.blown_up(c, self.reference, &self.at, self.core);
         let over = |f: &[Approx; 5], a, b| bernstein(&f[..4], a, b);
         let q = over(&below, a, b);
         let p = over(&top, a, b);
@@ -85,6 +89,20 @@ fn quotients(p: &[Approx; 5], q: &[Approx; 5]) -> Option<(f64, f64)> {
 }
 
 impl Pencil {
+    /// Where all members meet, and how often at least.
+    pub(super) fn known(&self) -> &[(NumId, usize)] {
+        &self.chart.at
+    }
+
+    /// How many of the members pass near one another somewhere in [a, b], so that nothing is to be asked of the
+    /// pencil there.
+    pub(super) fn crowd_in(&self, a: f64, b: f64) -> Option<usize> {
+        let core = self.chart.core?;
+        let (from, to) = (core.middle - core.half, core.middle + core.half);
+        // One rounding further out.
+        (from.next_down() <= b && a <= to.next_up()).then_some(self.count)
+    }
+
     /// Calls `found` with the members that may meet a curve over [a, b] beside the point.
     pub(super) fn query(
         &self,
@@ -128,7 +146,7 @@ impl Tracer<'_> {
     }
 
     /// Makes a pencil of items through the point over x, all of one pencil `old` or of none.
-    fn gather_pencil(&mut self, x: NumId, old: u32, members: Vec<u32>) {
+    fn gather_pencil(&mut self, x: NumId, old: u32, mut members: Vec<u32>) {
         let curve = |item: u32| match self.items[item as usize].carrier {
             Carrier::Graph(c) => c,
             Carrier::Vertical(..) => unreachable!("pencils hold graphs"),
@@ -149,9 +167,10 @@ impl Tracer<'_> {
                         .1
                 },
                 at: Vec::new(),
+                core: None,
             },
         };
-        let used: usize = chart.at.iter().map(|a| a.1).sum();
+        let used = chart.at.iter().map(|a| a.1).sum::<usize>() + usize::from(chart.core.is_some());
         let orders: Vec<usize> = members
             .iter()
             .map(|&i| self.k.contact(curve(i), chart.reference, x))
@@ -164,13 +183,43 @@ impl Tracer<'_> {
             return;
         };
         chart.at.push((x, order));
+        let mut orders = orders.iter();
+        members.retain(|_| orders.next().is_some_and(|&o| o >= order));
+        self.add_pencil(chart, &members);
+    }
+
+    /// Makes a pencil of items that pass near one another near `middle`, in a window too small to be halved.
+    pub(super) fn gather_cluster(&mut self, item: u32, middle: f64, window: f64, near: &[u32]) {
+        let Carrier::Graph(reference) = self.items[item as usize].carrier else {
+            return;
+        };
+        let core = Core {
+            middle,
+            half: window,
+        };
+        let mut members: Vec<u32> = near.to_vec();
+        members.push(item);
+        members.retain(|&i| {
+            matches!(self.items[i as usize].carrier, Carrier::Graph(_))
+                && self.pencil_of[i as usize] == NONE
+        });
+        let chart = Chart {
+            reference,
+            at: Vec::new(),
+            core: Some(core),
+        };
+        self.add_pencil(chart, &members);
+    }
+
+    fn add_pencil(&mut self, chart: Chart, members: &[u32]) {
         let id = self.pencils.len() as u32;
         let mut entries = Vec::with_capacity(PIECES * members.len());
-        let mut count = 0;
-        for (&item, _) in members.iter().zip(&orders).filter(|(_, o)| **o >= order) {
-            count += 1;
+        for &item in members {
+            let Item { carrier, l, r, .. } = self.items[item as usize];
+            let Carrier::Graph(c) = carrier else {
+                continue;
+            };
             self.pencil_of[item as usize] = id;
-            let Item { l, r, .. } = self.items[item as usize];
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
             let pieces = if (b - a).is_finite() { PIECES } else { 1 };
             let mut from = a;
@@ -180,15 +229,11 @@ impl Tracer<'_> {
                 } else {
                     (a + (b - a) * (p as f64 / pieces as f64)).clamp(from, b)
                 };
-                let c = match self.items[item as usize].carrier {
-                    Carrier::Graph(c) => c,
-                    Carrier::Vertical(..) => unreachable!("pencils hold graphs"),
-                };
                 entries.push((chart.hull(self.k, c, from, to), item));
                 from = to;
             }
         }
-        let rest = (LARGE * count >= self.items.len()).then(|| {
+        let rest = (LARGE * members.len() >= self.items.len()).then(|| {
             let tree = &self.tree;
             let others = (0..tree.entries())
                 .map(|at| (*tree.hull(at), tree.entry(at)))
@@ -198,6 +243,7 @@ impl Tracer<'_> {
         self.pencils.push(Pencil {
             chart,
             tree: Tree::new(entries),
+            count: members.len(),
             rest,
         });
     }

@@ -127,6 +127,14 @@ pub struct Question<'a> {
     pub leaf: usize,
 }
 
+/// A face found, and how.
+pub(super) struct Found {
+    pub(super) kernel: Kernel,
+    pub(super) face: Face,
+    method: Method,
+    merges: u64,
+}
+
 impl Question<'_> {
     /// Finds the face.
     ///
@@ -136,6 +144,20 @@ impl Question<'_> {
     /// # Errors
     /// If an arc is none (no such root, ends in the wrong order, a pole inside), or the start lies on one.
     pub fn answer(&self) -> Result<Answer, FaceError> {
+        let found = self.find()?;
+        let frame = u64::from(found.face.unbounded);
+        Ok(Answer {
+            half_edges: found.face.half_edges + 4 * frame,
+            components: found.face.comps.len() as u64 + frame,
+            unbounded: found.face.unbounded,
+            method: found.method,
+            merges: found.merges,
+            stats: found.kernel.stats,
+        })
+    }
+
+    /// Finds the face, with all that is known of it.
+    pub(super) fn find(&self) -> Result<Found, FaceError> {
         let line = |i: usize| self.arcs.get(i).map_or(0, |a| a.line);
         let bad = |i: usize| move |why| FaceError::BadArc(i, line(i), why);
         let mut k = Kernel::default();
@@ -167,20 +189,11 @@ impl Question<'_> {
                 }
             },
         };
-        let Face {
-            half_edges,
-            comps,
-            unbounded,
-            ..
-        } = found.map_err(|OnArc(i)| FaceError::StartOnArc(i as usize, line(i as usize)))?;
-        let frame = u64::from(unbounded);
-        Ok(Answer {
-            half_edges: half_edges + 4 * frame,
-            components: comps.len() as u64 + frame,
-            unbounded,
+        Ok(Found {
+            face: found.map_err(|OnArc(i)| FaceError::StartOnArc(i as usize, line(i as usize)))?,
+            kernel: k,
             method,
             merges,
-            stats: k.stats,
         })
     }
 }

@@ -254,6 +254,18 @@ impl Tracer<'_> {
         let mut near = std::mem::take(&mut self.near);
         if self.gather(item, &hull, most, &mut near) {
             self.stop(item, w, &near);
+            // As many different points in so small a window: not one point that many pass through.
+            let Window {
+                stops, stop_count, ..
+            } = self.windows[w as usize];
+            if depth >= DEEPEST
+                && stop_count as usize > crowd(DEEPEST - 1)
+                && self.pencil(item).is_none()
+            {
+                let middle = self.stops[(stops + stop_count / 2) as usize];
+                let middle = self.vertices[middle as usize].at.x;
+                self.gather_cluster(item, self.k.enclosure(middle).0, to - from, &near);
+            }
         } else {
             let kids = self.windows.len() as u32;
             self.windows.push(Window::new(from, mid));
@@ -273,6 +285,15 @@ impl Tracer<'_> {
     /// The items that may meet this one inside a hull; false as soon as there are more than `most`.
     fn gather(&mut self, item: u32, hull: &Hull, most: usize, near: &mut Vec<u32>) -> bool {
         near.clear();
+        let range = (hull.bounds[0], hull.bounds[1]);
+        let mut pencil = self.pencil(item);
+        if let Some(crowd) = pencil.and_then(|p| p.1.crowd_in(range.0, range.1)) {
+            if crowd > most {
+                return false;
+            }
+            pencil = None;
+        }
+        let pencil_id = pencil.map_or(NONE, |p| p.0);
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
@@ -281,7 +302,7 @@ impl Tracer<'_> {
         let me = &items[item as usize];
         let busy = self.busy.get(&item);
         let (mut few, mut tests, mut wasted) = (true, 0, 0);
-        let mut shared = Vec::new();
+        let own = self.pencil_of[item as usize];
         let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
@@ -298,41 +319,32 @@ impl Tracer<'_> {
             {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
-                if lo > hi || k.miss(c, d, lo, hi) {
+                let vain = lo > hi
+                    || if own != NONE && self.pencil_of[b as usize] == own {
+                        k.miss_beside(c, d, lo, hi, self.pencils[own as usize].known())
+                    } else {
+                        k.miss(c, d, lo, hi)
+                            || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                    };
+                if vain {
                     wasted += 1;
                     return true;
-                }
-                if let Some(mine) = busy
-                    && let Some(theirs) = self.busy.get(&b)
-                {
-                    shared.clear();
-                    let both = mine.iter().filter(|v| theirs.contains(v));
-                    shared.extend(both.map(|&v| self.vertices[v as usize].at.x));
-                    if !shared.is_empty() && k.miss_beside(c, d, lo, hi, &shared) {
-                        wasted += 1;
-                        return true;
-                    }
                 }
             }
             near.push(b);
             few = near.len() <= most;
             few
         };
-        let pencil = self.pencil(item);
-        if let (Some((_, pencil)), Carrier::Graph(c)) = (pencil, me.carrier) {
-            let range = (hull.bounds[0], hull.bounds[1]);
+        let pencil = (pencil_id != NONE).then(|| &self.pencils[pencil_id as usize]);
+        if let (Some(pencil), Carrier::Graph(c)) = (pencil, me.carrier) {
             pencil.query(k, c, range, &mut consider);
         }
-        if let Some((
-            _,
-            Pencil {
-                rest: Some(rest), ..
-            },
-        )) = pencil
+        if let Some(Pencil {
+            rest: Some(rest), ..
+        }) = pencil
         {
             rest.query(hull, &mut consider);
         } else {
-            let pencil = pencil.map_or(NONE, |p| p.0);
             let (bands, entries) = (&self.bands, self.tree.entries());
             let wanted = |at: usize, node: &Hull| {
                 !node.apart(hull)
@@ -346,7 +358,7 @@ impl Tracer<'_> {
                     }
             };
             self.tree.descend(wanted, |b| {
-                pencil != NONE && self.pencil_of[b as usize] == pencil || consider(b)
+                pencil_id != NONE && self.pencil_of[b as usize] == pencil_id || consider(b)
             });
         }
         self.stamp = stamp;
@@ -356,6 +368,30 @@ impl Tracer<'_> {
             self.bands = Bands::new(self.k, self.items, &self.tree);
         }
         few
+    }
+
+    /// Whether an item through the vertices `mine` surely meets another over [lo, hi] only in those that both
+    /// pass through.
+    fn only_there(
+        &self,
+        mine: &[u32],
+        other: u32,
+        (c, d): (CurveId, CurveId),
+        lo: f64,
+        hi: f64,
+    ) -> bool {
+        let Some(theirs) = self.busy.get(&other) else {
+            return false;
+        };
+        let known: Vec<(NumId, usize)> = mine
+            .iter()
+            .filter(|v| theirs.contains(v))
+            .map(|&v| {
+                let x = self.vertices[v as usize].at.x;
+                (x, self.k.contact(c, d, x))
+            })
+            .collect();
+        !known.is_empty() && self.k.miss_beside(c, d, lo, hi, &known)
     }
 
     /// The remembered vertices inside an item, as hits on a window.

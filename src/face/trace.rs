@@ -40,7 +40,7 @@ impl Dir {
         }
     }
     /// Whether the walk goes from the low to the high end.
-    fn forward(self) -> bool {
+    pub(super) fn forward(self) -> bool {
         matches!(self, Dir::Right | Dir::Up)
     }
 }
@@ -66,7 +66,7 @@ pub(crate) struct Edge {
     pub(crate) below: bool,
     pub(crate) cycle: u32,
     /// Its germs at the low and the high end.
-    germs: [u32; 2],
+    pub(super) germs: [u32; 2],
 }
 
 /// A boundary cycle of the face.

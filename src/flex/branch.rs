@@ -223,3 +223,6 @@ fn conclude(
         certificate: report["certificate"].take(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -34,7 +34,7 @@ pub const MAX_BODIES: usize = 5_000;
 pub fn generate(family: &str, bodies: usize, seed: u64) -> Result<Structure, String> {
     let least = match family {
         "can" => 8,
-        "ring" => 3,
+        "ring" => 4,
         _ => 2,
     };
     if !(least..=MAX_BODIES).contains(&bodies) {
@@ -161,7 +161,9 @@ fn sides(n: usize, ring: bool) -> (usize, usize) {
     known.unwrap_or_else(|| {
         let low = (1..)
             .take_while(|h| h * h <= n)
-            .filter(|h| n.is_multiple_of(*h) && (!ring || n / h >= 3))
+            .filter(|h| n.is_multiple_of(*h))
+            // A ring as wide as it is round would overlap itself at its inner side.
+            .filter(|h| !ring || (n / h >= 4 && n / h > *h))
             .last()
             .unwrap_or(1);
         (n / low, low)

@@ -66,30 +66,6 @@ impl Grain {
             .collect()
     }
 
-    /// The poses themselves, rounded.
-    pub(crate) fn rounded(&self, poses: &[Pose]) -> Vec<Pose> {
-        let range = |p: &Pose| {
-            let u = double(&p.tan_half);
-            let radius = self.turn * (1.0 + u * u);
-            u.is_finite().then_some((u - radius, u + radius))
-        };
-        let turned = shared(&poses.iter().map(range).collect::<Vec<_>>());
-        let each = poses.iter().zip(turned);
-        each.map(|(pose, turned)| Pose {
-            place: Vec2::new(self.at(&pose.place.x), self.at(&pose.place.y)),
-            tan_half: turned.unwrap_or_else(|| pose.tan_half.clone()),
-        })
-        .collect()
-    }
-
-    /// Whether a pose is one that might have been rounded to another, give or take as much again.
-    pub(crate) fn meets(&self, pose: &Pose, other: &Pose) -> bool {
-        let apart = |a: &Rat, b: &Rat| (double(a) - double(b)).abs();
-        let (u, v) = (double(&pose.tan_half), double(&other.tan_half));
-        let shift = apart(&pose.place.x, &other.place.x).max(apart(&pose.place.y, &other.place.y));
-        shift <= self.distance() && (u - v).abs() <= 2.0 * self.turn * (1.0 + v * v)
-    }
-
     /// The nearest multiple of the grain.
     fn at(&self, v: &Rat) -> Rat {
         let scale = Int::one().shl(u64::from(self.place_bits));

@@ -13,6 +13,7 @@
 //! | `pairs` | which point is to stay on its side of which line? |
 //! | `model` | what are the distances, gradients and objective there? |
 //! | `station`, `grain` | where are gradients taken, and how are poses rounded? |
+//! | `bend` | along which curve is a direction followed? |
 //! | `step` | how far may a step go, and where does it end? |
 //! | `generate` | the paper's families of structures |
 //!
@@ -20,6 +21,7 @@
 //! Whether a configuration respects its constraints is decided by exact integers.
 
 pub mod apps;
+mod bend;
 mod bound;
 mod branch;
 pub mod generate;

@@ -224,12 +224,6 @@ impl Scaffold {
 
     /// The row of a pair.
     pub(crate) fn row(&self, pair: &Pair, placed: &[Placed]) -> Row {
-        self.scaled_row(pair, placed).0
-    }
-
-    /// The row of a pair, and what its d₀ and normal are multiplied by: d₀ over that is the
-    /// distance times the length of the line's normal in its body's frame.
-    pub(crate) fn scaled_row(&self, pair: &Pair, placed: &[Placed]) -> (Row, Int) {
         let (one, two) = (pair.line_body as usize, pair.point_body as usize);
         let line = self.line(one, pair.plane);
         let (p1, p2) = (&placed[one], &placed[two]);
@@ -253,30 +247,42 @@ impl Scaffold {
         let mut theta2 = &cross(offset, &n) * &q;
         let mut d0 = &dot(&n, &delta) * &den2 + &dot(&n, offset) * &q;
         let last = &(&constant * &p1.turn.d) * &scale;
-        let mut scale = &scale * &p1.turn.d;
         let (whole, rest) = last.div_rem_floor(&line.h);
         if rest.is_zero() {
             d0 -= &whole;
         } else {
             let h = &line.h;
-            scale = &scale * h;
             normal = [&normal[0] * h, &normal[1] * h];
             theta1 = &theta1 * h;
             theta2 = &theta2 * h;
             d0 = &d0 * h - &last;
         }
-        let row = Row {
+        Row {
             pair: *pair,
             normal,
             theta1,
             theta2,
             d0,
-        };
-        (row, scale)
+        }
     }
 
     /// The signed distance of a pair in doubles, and a bound of its error.
     pub(crate) fn near(&self, pair: &Pair, placed: &[Placed]) -> (f64, f64) {
+        let (p1, p2) = (
+            &placed[pair.line_body as usize],
+            &placed[pair.point_body as usize],
+        );
+        let (n, from, to) = self.seen(pair, placed);
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let far = dx.abs() + dy.abs();
+        // A marker or a camera may lie outside its body: its own distance counts as well.
+        let outlying = from[0].abs() + from[1].abs() + to[0].abs() + to[1].abs();
+        let error = 4.0 * (p1.blur + p2.blur) + (far + outlying) * 2f64.powi(-46);
+        (n[0] * dx + n[1] * dy, error)
+    }
+
+    /// A pair in doubles: the line's normal of length one, a point of the line, and the point.
+    pub(crate) fn seen(&self, pair: &Pair, placed: &[Placed]) -> ([f64; 2], [f64; 2], [f64; 2]) {
         let (one, two) = (pair.line_body as usize, pair.point_body as usize);
         let (p1, p2) = (&placed[one], &placed[two]);
         let stored;
@@ -302,12 +308,7 @@ impl Scaffold {
                 [x + (p2.cos * a - p2.sin * b), y + (p2.sin * a + p2.cos * b)]
             }
         };
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-        let far = dx.abs() + dy.abs();
-        // A marker or a camera may lie outside its body: its own distance counts as well.
-        let outlying = from[0].abs() + from[1].abs() + to[0].abs() + to[1].abs();
-        let error = 4.0 * (p1.blur + p2.blur) + (far + outlying) * 2f64.powi(-46);
-        (n[0] * dx + n[1] * dy, error)
+        (n, from, to)
     }
 
     /// The weighted sum of displacements since the start, exactly. An angle counts as twice the

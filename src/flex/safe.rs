@@ -196,10 +196,10 @@ fn length(row: &Row) -> Int {
 /// Bits of what is held back: as many as make it no more than a 500th too much.
 const HELD_BITS: u64 = 10;
 
-/// The row with a distance held back, or a little more.
-fn hold(row: &Row, distance: f64) -> Row {
+/// The row with a distance held back, or a little more; one that is negative is given.
+pub(crate) fn hold(row: &Row, distance: f64) -> Row {
     let back = Rat::from_f64(distance) * Rat::from(length(row));
-    if back.sign() <= 0 {
+    if back.is_zero() {
         return row.clone();
     }
     // The units of a row may be coarse (a distance of 3, say): in finer ones, then.

@@ -1,36 +1,36 @@
-//! Where the gradients of a step are taken.
+//! Where the gradients of a step are taken, and how far they are rounded.
 //!
-//! A program says J q̇ + d₀ ≥ 0. What must be exact is d₀, or errors would add up; J may be taken
-//! at a configuration nearby, since it multiplies a motion that gets shorter from step to step
-//! (Newton's method with a held derivative). So after the first step, whose J is exact, every body
-//! has a *station*: its pose rounded to few digits, kept until some body has moved away from its
-//! own. Three things follow. The numbers of J are short, and with them all of the exact work.
-//! Bodies that stand nearly parallel have one rotation there, so rows that depend on each other do
-//! so exactly. And the last programs of a run, in which hardly anything moves, share one matrix,
-//! so that the basis of one solves the next.
+//! A program says J q̇ + d₀ ≥ 0. What must be accurate is d₀, or errors would add up; J may be taken
+//! nearby, since it multiplies a motion that gets shorter from step to step (Newton's method with
+//! a held derivative). The first step is exact in both. After it
 //!
-//! A station is within 2⁻¹² of its body, as an angle and as a part of the largest body: J is off
-//! by about as much, relatively, and a step of length q̇ is left with a violation of 2⁻¹² |q̇|
-//! beside the second-order one that every linear step has. The exact test sees both.
+//! - J is taken where every body has its *station*: its pose of some steps ago, kept until any
+//!   body has moved away from its own. So the last programs of a run, in which hardly anything
+//!   moves, share one matrix, and the basis of one solves the next.
+//! - Unit normals, vertices and reference points there are rounded to some ten bits, and J is
+//!   computed from them exactly. Its numbers are short, and with them all of the exact work; and
+//!   what depends on each other because bodies are rigid still does.
+//! - d₀ is rounded to a multiple of a small grain, far below what a step must gain: constraints
+//!   that a configuration meets up to its own rounding are met exactly, and the vertex of the
+//!   program that it stands on is one vertex, not hundreds within 10⁻⁹ of each other.
 //!
-//! d₀ is rounded to a multiple of a small grain, far below what a step must gain: constraints that
-//! a configuration meets up to its own rounding are met exactly, and the vertex of the program
-//! that it stands on is one vertex, not hundreds within 10⁻⁹ of each other.
+//! J is off by about 2⁻¹⁰, relatively, so a step of length q̇ is left with a violation of 2⁻¹⁰ |q̇|
+//! beside the second-order one that every linear step has. The exact test judges both.
 
-use super::grain::Grain;
 use super::model::{Row, Scaffold};
 use super::pairs::Pair;
 use super::shape::{Placed, Pose, double};
 use crate::number::{Int, Rat};
 
-/// A station's distance from its body, as a part of the largest body.
-const NEAR: f64 = 1.0 / 2048.0;
+/// Bits of a unit normal's parts, and of a length as long as the largest body.
+const BITS: i32 = 10;
 
 /// The stations of all bodies.
 pub(crate) struct Stations {
     pub(crate) poses: Vec<Pose>,
     placed: Vec<Placed>,
-    coarse: Grain,
+    /// Lengths are multiples of 2 to minus this.
+    length_bits: i32,
     /// The grain of distances.
     grain: f64,
     /// Whether the bodies are still at the start, where everything is exact.
@@ -42,29 +42,39 @@ pub(crate) struct Stations {
 pub(crate) enum Rounding {
     /// To the nearest.
     Nearest,
-    /// Never upwards: what keeps the rounded distance keeps the true one.
+    /// Downwards: what keeps the rounded distance keeps the true one.
     Down,
 }
 
 impl Stations {
     /// Every body at its own start.
     pub(crate) fn new(scaffold: &Scaffold, reach: f64, grain: f64) -> Stations {
+        let size = reach.max(f64::MIN_POSITIVE).log2().floor();
         Stations {
             placed: scaffold.place(&scaffold.start),
             poses: scaffold.start.clone(),
-            coarse: Grain::of(reach * NEAR, reach),
+            length_bits: (BITS - size.clamp(-900.0, 900.0) as i32).clamp(-900, 900),
             grain,
             start: true,
         }
     }
 
     /// Lets the stations follow the bodies, if any has moved away from its own.
-    pub(crate) fn follow(&mut self, scaffold: &Scaffold, poses: &[Pose]) {
+    pub(crate) fn follow(&mut self, scaffold: &Scaffold, poses: &[Pose], placed: &[Placed]) {
         self.start &= poses == scaffold.start;
-        let each = poses.iter().zip(&self.poses);
-        if !self.start && !each.clone().all(|(p, s)| self.coarse.meets(p, s)) {
-            self.poses = self.coarse.rounded(poses);
-            self.placed = scaffold.place(&self.poses);
+        let length = 2f64.powi(-self.length_bits);
+        let meets = |p: &Placed, s: &Placed| {
+            let apart = |a: f64, b: f64, by: f64| (a - b).abs() <= by;
+            let turn = 2f64.powi(-BITS);
+            apart(p.centre[0], s.centre[0], length)
+                && apart(p.centre[1], s.centre[1], length)
+                && apart(p.cos, s.cos, turn)
+                && apart(p.sin, s.sin, turn)
+        };
+        let stays = placed.iter().zip(&self.placed).all(|(p, s)| meets(p, s));
+        if !self.start && !stays {
+            self.poses = poses.to_vec();
+            self.placed = placed.to_vec();
         }
     }
 
@@ -76,45 +86,73 @@ impl Stations {
         placed: &[Placed],
         rounding: Rounding,
     ) -> Row {
-        let (there, true_scale) = scaffold.scaled_row(pair, placed);
-        if self.start {
-            return there;
-        }
-        let (mut row, scale) = scaffold.scaled_row(pair, &self.placed);
-        // Coefficients without common factor, so that what is left of the distances is dyadic.
-        let content = content(scaffold, &row);
-        // A part that has no column need not be divisible, and is not read.
-        let part = |v: &Int| v.div_rem_floor(&content).0;
-        row.normal = [part(&row.normal[0]), part(&row.normal[1])];
-        (row.theta1, row.theta2) = (part(&row.theta1), part(&row.theta2));
-        // d₀ is to be a multiple of 2ᵏ, which is the grain or a little less; for k < 0 the row is
-        // multiplied by 2⁻ᵏ.
-        let k = (self.grain * length(&row)).log2().floor();
-        let k = k.clamp(-200.0, 1000.0) as i64;
-        let up = k.min(0).unsigned_abs();
-        row.normal = row.normal.map(|v| v.shl(up));
-        (row.theta1, row.theta2) = (row.theta1.shl(up), row.theta2.shl(up));
-        let k = k.max(0) as u64;
-        let top = (&there.d0 * &scale).shl(up);
-        let bottom = (&true_scale * &content).shl(k);
-        let top = match rounding {
-            Rounding::Down => top,
-            Rounding::Nearest => top + bottom.shr(1),
+        let rounded = if self.start {
+            None
+        } else {
+            self.rounded(scaffold, pair, placed, rounding)
         };
-        row.d0 = top.div_rem_floor(&bottom).0.shl(k);
-        row
+        rounded.unwrap_or_else(|| scaffold.row(pair, placed))
     }
-}
 
-/// The greatest common divisor of what a row has in the program's columns; 1 where that is nothing.
-fn content(scaffold: &Scaffold, row: &Row) -> Int {
-    let entries = scaffold.entries(row);
-    let g = entries.iter().fold(Int::zero(), |g, (_, v)| g.gcd(v));
-    if g.is_zero() { Int::one() } else { g }
-}
-
-/// |n| of a row, roughly.
-fn length(row: &Row) -> f64 {
-    let [x, y] = row.normal.each_ref().map(|v| double(&Rat::from(v.clone())));
-    x.hypot(y).max(f64::MIN_POSITIVE)
+    /// The rounded row; None where doubles are no good for it.
+    fn rounded(
+        &self,
+        scaffold: &Scaffold,
+        pair: &Pair,
+        placed: &[Placed],
+        rounding: Rounding,
+    ) -> Option<Row> {
+        let (one, two) = (pair.line_body as usize, pair.point_body as usize);
+        let (n, _, to) = scaffold.seen(pair, &self.placed);
+        let whole = |v: f64, bits: i32| {
+            let scaled = (v * 2f64.powi(bits)).round();
+            (scaled.abs() < 9e15).then_some(scaled as i64)
+        };
+        let point = |p: [f64; 2]| -> Option<[Int; 2]> {
+            let at = |k: usize| whole(p[k], self.length_bits).map(Int::from);
+            Some([at(0)?, at(1)?])
+        };
+        let normal = [Int::from(whole(n[0], BITS)?), Int::from(whole(n[1], BITS)?)];
+        let (at, x1, x2) = (
+            point(to)?,
+            point(self.placed[one].centre)?,
+            point(self.placed[two].centre)?,
+        );
+        let from = |x: &[Int; 2]| [&at[0] - &x[0], &at[1] - &x[1]];
+        let (arm1, arm2) = (from(&x1), from(&x2));
+        let cross = super::shape::cross;
+        // Everything times 2^(BITS + length_bits), and the true normal times 2^BITS is rounded.
+        let (mut theta1, mut theta2) = (cross(&normal, &arm1), cross(&arm2, &normal));
+        // d₀ is a multiple of 2ᵏ in these units, which is the grain or a little less; for k < 0
+        // the row is multiplied by 2⁻ᵏ. What the row is multiplied by must not be below one for
+        // the normal either.
+        let scale = self.length_bits + BITS;
+        let k = self.grain.log2().floor() as i32 + scale;
+        let up = (-k).max(0).max(-self.length_bits).unsigned_abs().into();
+        let k = k + up as i32;
+        (theta1, theta2) = (theta1.shl(up), theta2.shl(up));
+        let stretch = (self.length_bits + up as i32).unsigned_abs().into();
+        let normal = normal.map(|v| v.shl(stretch));
+        let (mut d, mut error) = scaffold.near(pair, placed);
+        if error > self.grain / 8.0 {
+            let row = scaffold.row(pair, placed);
+            let size = double(&super::step::violation(&row)).sqrt();
+            (d, error) = (size * f64::from(row.d0.sign()), size * 1e-15);
+        }
+        let units = d * 2f64.powi(scale + up as i32 - k);
+        let units = match rounding {
+            Rounding::Down => (units - error / self.grain).floor(),
+            Rounding::Nearest => units.round(),
+        };
+        // What was not negative stays so.
+        let units = if d >= 0.0 { units.max(0.0) } else { units };
+        let d0 = Rat::from_f64(units.is_finite().then_some(units)?).floor();
+        Some(Row {
+            pair: *pair,
+            normal,
+            theta1,
+            theta2,
+            d0: d0.shl(k.unsigned_abs().into()),
+        })
+    }
 }

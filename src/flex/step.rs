@@ -13,6 +13,7 @@
 //! threshold, so digits never pile up, and whatever rounding does to the constraints is seen by
 //! the same exact test, since it judges the rounded configuration.
 
+use super::bend::Bend;
 use super::branch::{self, Solved};
 use super::grain::Grain;
 use super::model::{Row, Scaffold};
@@ -210,6 +211,10 @@ struct Taken {
 
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
 const FINE: f64 = 0.25;
+/// Steps that together may gain nothing, each by itself much.
+const SWINGS: [usize; 3] = [2, 4, 6];
+/// Of what a program promises, the part of a direction followed must gain this much at least.
+const KEEPS: f64 = 0.1;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -309,7 +314,7 @@ impl<'a> Run<'a> {
             }
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
-            self.stations.follow(&self.scaffold, &poses);
+            self.stations.follow(&self.scaffold, &poses, &placed);
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
                 let safe = self.safe_step(&poses, &placed, k > 0);
@@ -330,10 +335,9 @@ impl<'a> Run<'a> {
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
                 let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                let next = solved
-                    .direction
-                    .as_ref()
-                    .map(|direction| self.search(&pairs, &poses, direction));
+                let next = solved.direction.as_ref().map(|direction| {
+                    self.search(&pairs, &poses, direction, double(&solved.objective))
+                });
                 let (scale, next) = next.unzip();
                 Taken {
                     model_seconds,
@@ -397,12 +401,16 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
-            // Where other corners face each other a step later, what one step gains the next may
-            // take back, over and over: the two together gain nothing.
-            let steps = &out.steps;
-            let swings = steps.len() > 1
-                && gain.sign() < 0
-                && (&gain + &steps[steps.len() - 2].gain).abs() < rules.gain;
+            // Where other corners face each other a step later, what some steps gain others may
+            // take back, over and over: together they gain nothing.
+            let taken_back = |count: usize| {
+                let last = out.steps.len().checked_sub(count);
+                last.is_some_and(|from| {
+                    let sum = out.steps[from..].iter().map(|s| &s.gain);
+                    sum.fold(Rat::zero(), |s, g| s + g).abs() < rules.gain
+                })
+            };
+            let swings = gain.sign() < 0 && SWINGS.into_iter().any(taken_back);
             if gain.abs() < rules.gain || swings {
                 out.ending = self.settled(taken.promise);
                 break;
@@ -474,19 +482,46 @@ impl<'a> Run<'a> {
         self.stations.row(&self.scaffold, pair, placed, rounding)
     }
 
+    /// How directions are followed from a configuration.
+    fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
+        // Robots of a flock are not joined: they go straight.
+        let joined = self.scaffold.nearest.is_none() && self.scaffold.views.is_empty();
+        let links = pairs
+            .iter()
+            .filter(|_| joined)
+            .map(|p| (p.line_body as usize, p.point_body as usize));
+        Bend::new(&self.scaffold.forms, poses, links)
+    }
+
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
-    fn search(&self, pairs: &[Pair], poses: &[Pose], direction: &[[f64; 3]]) -> (Rat, Vec<Pose>) {
+    fn search(
+        &self,
+        pairs: &[Pair],
+        poses: &[Pose],
+        direction: &[[f64; 3]],
+        promise: f64,
+    ) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
         let grain = self.grain();
-        let at = |scale: f64| grain.moved(poses, &self.scaffold.forms, direction, scale);
-        let good = |poses: &[Pose]| {
+        let forms = &self.scaffold.forms;
+        let bend = self.bend(pairs, poses);
+        let at = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
+        let before = self.scaffold.displacement(poses);
+        // A step that is to restore constraints may lose; one that is to gain must gain.
+        let least = |scale: f64| (promise > 0.0).then(|| Rat::from_f64(KEEPS * promise * scale));
+        let good = |poses: &[Pose], scale: f64| {
+            if let Some(least) = least(scale)
+                && self.scaffold.displacement(poses) - &before < least
+            {
+                return false;
+            }
             let placed = self.scaffold.place(poses);
             !self.exceeds(pairs, &placed, allowed)
                 && !super::pairs::too_deep(&self.scaffold, &placed, double(allowed))
         };
         let whole = at(1.0);
-        if good(&whole) {
+        if good(&whole, 1.0) {
             return (Rat::one(), whole);
         }
         let (mut low, mut high) = (0.0f64, 1.0f64);
@@ -494,7 +529,7 @@ impl<'a> Run<'a> {
         for _ in 0..HALVINGS {
             let middle = (low + high) / 2.0;
             let there = at(middle);
-            if good(&there) {
+            if good(&there, middle) {
                 (low, best) = (middle, there);
             } else {
                 high = middle;

@@ -24,6 +24,8 @@ use crate::number::Int;
 const PRECISION: usize = 4;
 /// Random combinations whose denominators are joined.
 const COMBINATIONS: usize = 6;
+/// Components of a solution that are worked on together.
+const BLOCK: usize = 64;
 /// Factors that are added to a denominator before it is given up.
 const COMPLETIONS: usize = 4;
 /// Rows of a kernel below which it is not worth while to foresee the denominator's length.
@@ -451,27 +453,34 @@ impl Window {
     fn extend(&mut self, digits: &[Vec<u64>], width: usize) {
         let n = digits.first().map_or(0, Vec::len);
         let long = self.denominator.len() > 8000;
-        while self.sums.len() < width {
-            let top = self.low + self.sums.len();
-            let mut sum = vec![0u128; n];
-            let mut carry = vec![0u32; if long { n } else { 0 }];
-            for (i, &d) in self.denominator.iter().enumerate().take(top + 1) {
-                let x = &digits[top - i];
-                if long {
-                    for ((s, &x), c) in sum.iter_mut().zip(x).zip(&mut carry) {
-                        let (v, over) = s.overflowing_add(u128::from(d) * u128::from(x));
-                        *s = v;
-                        *c += u32::from(over);
-                    }
-                } else {
-                    for (s, &x) in sum.iter_mut().zip(x) {
-                        *s += u128::from(d) * u128::from(x);
+        let done = self.sums.len();
+        for _ in done..width {
+            self.sums.push(vec![0; n]);
+            if long {
+                self.carries.push(vec![0; n]);
+            }
+        }
+        // Block by block, so that the digits of a block stay in the cache.
+        for start in (0..n).step_by(BLOCK) {
+            let block = start..(start + BLOCK).min(n);
+            for t in done..width {
+                let top = self.low + t;
+                let sum = &mut self.sums[t][block.clone()];
+                for (i, &d) in self.denominator.iter().enumerate().take(top + 1) {
+                    let x = &digits[top - i][block.clone()];
+                    if long {
+                        let carry = &mut self.carries[t][block.clone()];
+                        for ((s, &x), c) in sum.iter_mut().zip(x).zip(carry) {
+                            let (v, over) = s.overflowing_add(u128::from(d) * u128::from(x));
+                            *s = v;
+                            *c += u32::from(over);
+                        }
+                    } else {
+                        for (s, &x) in sum.iter_mut().zip(x) {
+                            *s += u128::from(d) * u128::from(x);
+                        }
                     }
                 }
-            }
-            self.sums.push(sum);
-            if long {
-                self.carries.push(carry);
             }
         }
     }

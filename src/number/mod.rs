@@ -12,7 +12,7 @@ mod interval;
 mod isolate;
 pub mod literal;
 mod long;
-mod modular;
+pub(crate) mod modular;
 mod poly;
 mod rat;
 mod refine;

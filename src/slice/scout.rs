@@ -96,6 +96,7 @@ impl Breaks {
     /// is there.
     fn root(&mut self, x: Interval) -> Option<()> {
         if x.lo > 1.0 || x.hi < -1.0 {
+            filter::settled(Stage::Double);
             return Some(());
         }
         let i = self.all().iter().position(|b| !b.below(&x))?;
@@ -105,6 +106,8 @@ impl Breaks {
         if i == 0 || !x.below(&self.at[i]) || self.len == MOST {
             return None;
         }
+        // One question as the ledger counts: inside, and where among the others.
+        filter::settled(Stage::Double);
         self.at.copy_within(i..self.len, i + 1);
         self.at[i] = x;
         self.len += 1;
@@ -125,13 +128,17 @@ impl Breaks {
     fn roots(&mut self, f: &Form) -> Option<()> {
         let whole = Interval { lo: -1.0, hi: 1.0 };
         if matches!(at(f, whole).sign(), Some(1 | -1)) {
+            filter::settled(Stage::Double);
             return Some(());
         }
         let [c, b, a] = *f;
         let d = b.square() - twice(twice(a * c));
         let s = match d.sign()? {
             1 => d.sqrt(),
-            -1 => return Some(()),
+            -1 => {
+                filter::settled(Stage::Double);
+                return Some(());
+            }
             _ => return None,
         };
         let sign = b.sign().unwrap_or(0);
@@ -388,7 +395,7 @@ fn ordinary(patch: &Patch<Enclosed>) -> bool {
     let (f0, f1) = (&patch.f0, &patch.f1);
     if constant(f1) {
         // Type B: f₁ is a constant.
-        return !holds_zero(&f1.k) && !(holds_zero(&f0.c) && holds_zero(&f0.s));
+        return !(holds_zero(&f1.k) || holds_zero(&f0.c) && holds_zero(&f0.s));
     }
     // Type A: f₁ vanishes at (cos, sin) = ±(−s₁, c₁)/ρ.
     let cross = f0.s.times(&f1.c).minus(&f0.c.times(&f1.s)).square();

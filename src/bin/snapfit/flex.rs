@@ -147,6 +147,9 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
         Accuracy::Bounds => (lp::Accuracy::Bounds, "bounds"),
         Accuracy::Exact => (lp::Accuracy::Exact, "exact"),
     };
+    if let Some(dir) = args.programs.as_ref().filter(|d| !d.is_dir()) {
+        return Err(format!("{}: no folder to write programs to", dir.display()).into());
+    }
     let count = std::cell::Cell::new(0u32);
     let write = |model: &lp::Model| {
         if let Some(dir) = &args.programs {

@@ -502,7 +502,7 @@ mod tests {
                 // A push that is kept for a while slides along what it meets.
                 let push = [draw(), draw(), 2.0 * draw()];
                 for step in 0..80 {
-                    let part = [0.3, 0.1, 0.03][step % 3];
+                    let part = [0.3, 0.08, 0.02, 0.005][step % 4];
                     let mut by = |k: usize| (push[k] + 0.4 * draw()) * part;
                     let shift = [0, 1].map(|k| by(k) * h.shift[k].get());
                     let mut next = at.clone();
@@ -558,7 +558,7 @@ mod tests {
         for (family, bodies) in [("grid", 4), ("jit", 4), ("jrot", 4), ("chain", 3)] {
             all.extend(walk(family, bodies, &mut draw));
         }
-        assert!(all.len() > 250, "{}", all.len());
+        assert!(all.len() > 150, "{}", all.len());
         // Somewhere the linear part alone is broken, so the slack is needed.
         let least = all.iter().copied().fold(f64::INFINITY, f64::min);
         assert!(least < 0.0, "{least}");

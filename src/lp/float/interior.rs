@@ -9,6 +9,8 @@ use super::engine::{Engine, rest};
 use super::program::Program;
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Stage};
+use crate::lp::field::Double;
+use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
@@ -17,6 +19,10 @@ use clarabel::solver::{
 /// Size of the perturbations, relative.
 const COST_NOISE: f64 = 1e-5;
 const BOUND_NOISE: f64 = 1e-6;
+/// Rounds in which dependent columns of the first basis are replaced.
+const REPLACEMENTS: usize = 12;
+/// A pivot below this makes a column one that depends on the others.
+const DEPENDENT: f64 = 1e-7;
 
 /// For every variable of `direct` how clearly it is off its bounds at the optimum.
 pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<Vec<f64>> {
@@ -134,8 +140,35 @@ pub(crate) fn heaviest(program: &Program, weights: &[f64]) -> Vec<Status> {
     let mut status: Vec<Status> = (0..total)
         .map(|v| rest(program.lower[v], program.upper[v]))
         .collect();
-    for &v in &order[..program.m] {
+    for v in independent(program, &order) {
         status[v] = Status::Basic;
     }
     status
+}
+
+/// Nearly the first m of an order that are linearly independent: those that depend on the others
+/// make room for the next ones. (Columns that are made to fit the rows left over instead give
+/// ill-conditioned bases, worse than the logicals that stand in for what is still missing.)
+fn independent(program: &Program, order: &[usize]) -> Vec<usize> {
+    let (first, mut rest) = order.split_at(program.m);
+    let mut chosen = first.to_vec();
+    for _ in 0..REPLACEMENTS {
+        let columns: Vec<Vec<(u32, f64)>> = chosen
+            .iter()
+            .map(|&v| {
+                let mut c = Vec::new();
+                program.each(v, |i, a| c.push((i as u32, a)));
+                c
+            })
+            .collect();
+        let Err(left) = factorise(&Double, &columns, 0.1, DEPENDENT) else {
+            break;
+        };
+        let count = left.columns.len().min(rest.len());
+        for (&k, &v) in left.columns.iter().zip(rest) {
+            chosen[k as usize] = v;
+        }
+        rest = &rest[count..];
+    }
+    chosen
 }

@@ -324,3 +324,37 @@ fn mantissa_exponent(matrix: &crate::lp::problem::Matrix, e: usize) -> i64 {
     }
     matrix.int(e).bits() as i64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lp::{Model, Range};
+    use crate::number::{Int, Rat};
+
+    /// Two rows and columns, with costs and right-hand sides in small units.
+    fn program(cost_unit: u64, bound_unit: u64) -> Program {
+        let small = |v: i64, k: u64| Rat::new(Int::from(v), Int::one().shl(k));
+        let mut model = Model::new("small");
+        for (cost, side) in [(3, 5), (-7, 11)] {
+            let range = Range::at_least(small(-side, bound_unit));
+            let j = model.add_column(&format!("x{side}"), small(cost, cost_unit), range);
+            let i = model.add_row(&format!("r{side}"), Range::at_most(small(side, bound_unit)));
+            model.set(i, j, Rat::from(cost + 10));
+        }
+        Program::new(&Problem::new(&model).expect("a small model"))
+    }
+
+    /// What tolerances are measured against must not depend on the units of the model.
+    #[test]
+    fn units_do_not_matter() {
+        let plain = program(0, 0);
+        for (cost, bound) in [(60, 0), (0, 90), (300, 40)] {
+            let other = program(cost, bound);
+            assert_eq!(plain.cost, other.cost);
+            assert_eq!(plain.lower, other.lower);
+            assert_eq!(plain.upper, other.upper);
+            let (a, b) = (plain.unscaled_objective(1.0), other.unscaled_objective(1.0));
+            assert_eq!(a, b * 2f64.powi((cost + bound) as i32));
+        }
+    }
+}
