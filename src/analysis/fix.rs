@@ -327,6 +327,7 @@ fn atan_point(x: &Fix) -> Fix {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

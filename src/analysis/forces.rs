@@ -2,7 +2,7 @@
 //! formula beside it (DP App. A).
 //!
 //! A pawl takes part where it has a stiffness; where none has, nothing is modelled and the result
-//! says so. The plan is enclosed by [`super::way`]; the way back is run too where the plan itself
+//! says so. The plan is enclosed by `way`; the way back is run too where the plan itself
 //! does not go back, so that assembly stands against disassembly.
 
 use super::bound::Bound;

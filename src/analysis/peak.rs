@@ -2,7 +2,7 @@
 //!
 //! Prop. A.1 says that the force peaks at an end of a stretch; that fails for type A, and for type
 //! B needs a cut where the sliding reverses. So nothing is assumed: the stretch is cut at the roots
-//! of d, and each part is searched ([`super::slope`]). Doubles with proven bounds settle what
+//! of d, and each part is searched (`slope`). Doubles with proven bounds settle what
 //! they can; numbers of any width settle the rest.
 
 use super::climb::Spot;

@@ -145,6 +145,7 @@ pub(super) fn lever(x: &Interval) -> [Interval; 2] {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::super::fix::Bits;
     use super::*;

@@ -214,14 +214,13 @@ impl Free {
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 
-    /// Loses the names of the arcs through a vertex, to see that a damaged F is found out.
+    /// Forgets that an arc bounds F, to see that a damaged F is found out.
     #[cfg(test)]
-    pub(crate) fn forget_links(&mut self, v: u32) {
-        let v = v as usize;
-        let (from, to) = (self.link_starts[v], self.link_starts[v + 1]);
-        self.links.drain(from as usize..to as usize);
-        for s in &mut self.link_starts[v + 1..] {
-            *s -= to - from;
+    pub(crate) fn forget_owner(&mut self, arc: crate::slice::ArcId) {
+        for e in &mut self.edges {
+            if e.owner == Owner::Arc(arc) {
+                e.owner = Owner::Cut;
+            }
         }
     }
     pub(super) fn kernel(&self) -> MutexGuard<'_, FaceKernel> {

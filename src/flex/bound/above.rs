@@ -135,6 +135,7 @@ impl std::iter::Sum for Above {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use proptest::prelude::*;

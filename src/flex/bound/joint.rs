@@ -477,6 +477,7 @@ impl Hinge {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use crate::flex::generate::generate;
@@ -506,8 +507,8 @@ mod tests {
                     let mut by = |k: usize| (push[k] + 0.4 * draw()) * part;
                     let shift = [0, 1].map(|k| by(k) * h.shift[k].get());
                     let mut next = at.clone();
-                    next.place.x = next.place.x + Rat::from_f64((shift[0] * 1e9).round() / 1e9);
-                    next.place.y = next.place.y + Rat::from_f64((shift[1] * 1e9).round() / 1e9);
+                    next.place.x += Rat::from_f64((shift[0] * 1e9).round() / 1e9);
+                    next.place.y += Rat::from_f64((shift[1] * 1e9).round() / 1e9);
                     let half = Rat::from_f64((by(2) * turn * 5e8).round() / 1e9);
                     next.tan_half =
                         (&next.tan_half + &half) / (Rat::one() - &next.tan_half * &half);
@@ -527,8 +528,8 @@ mod tests {
         let double = |r: &Rat| r.nearest_f64().unwrap();
         let shift = [&at.place.x - &start.place.x, &at.place.y - &start.place.y];
         let phi = 2.0 * double(&crate::flex::model::turned_by(start, at)).atan();
-        for k in 0..2 {
-            assert!(double(&shift[k]).abs() <= h.shift[k].get());
+        for (at, most) in shift.iter().zip(&h.shift) {
+            assert!(double(at).abs() <= most.get());
         }
         assert!(phi.abs() <= h.turn.get());
         let mut least = f64::INFINITY;

@@ -114,7 +114,7 @@ pub fn compare(scene: &Scene, seed: u64, instants: usize, steps: usize) -> Resul
     if steps > 0 {
         // A gap that comes and goes between two steps is missed: a difference counts where it
         // stays with steps twenty times as short.
-        let (mut coarse, mut fine) = (covered.clone(), covered.clone());
+        let (mut coarse, mut fine) = (covered, covered);
         if course(scene, &t, steps, &mut coarse).is_ok() {
             covered = coarse;
         } else {
