@@ -413,3 +413,21 @@ fn inputs_and_results_are_spared() {
     }
     assert_eq!(fs::read(&scene).unwrap(), before);
 }
+
+/// `trade` over a folder takes the scenes of it and of its folders, and nothing else.
+#[test]
+fn a_folder_is_searched_for_scenes() {
+    let folder = folder("search");
+    let below = folder.join("below");
+    fs::create_dir_all(&below).unwrap();
+    fs::create_dir_all(folder.join("empty")).unwrap();
+    fs::copy(PINS, below.join("scene.toml")).unwrap();
+    fs::write(folder.join("notes.txt"), "not a scene").unwrap();
+    let structure = folder.join("grid.toml").to_string_lossy().into_owned();
+    snapfit(&["generate", "grid", "--bodies", "4", "--out", &structure]);
+    let top = folder.to_string_lossy().into_owned();
+    let output = snapfit(&["trade", &top, "--fast", "--repeat", "1", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(found["scenes"].as_array().unwrap().len(), 1);
+}

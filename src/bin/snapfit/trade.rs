@@ -3,6 +3,7 @@
 use super::{DECIDED, Failure, UNDECIDED, output};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use snapfit::flex::{Guise, guise};
 use snapfit::kernel::Identify;
 use snapfit::motion::Arithmetic;
 use snapfit::report::pretty;
@@ -109,7 +110,8 @@ fn compare(args: &Trade) -> Result<u8, Failure> {
     for file in &files {
         let bytes = std::fs::read(file).map_err(|e| format!("{}: {e}", file.display()))?;
         let name = file.display().to_string();
-        let read = read_scene_bytes(&name, &bytes, &[]).map_err(Failure::Scene)?;
+        let read = read_scene_bytes(&name, &bytes, &[])
+            .map_err(|errors| super::mistaken(&name, &bytes, Guise::Scene, errors))?;
         scenes.push(read.into_scene());
     }
     if args.map {
@@ -227,29 +229,42 @@ fn print(args: &Trade, document: &impl Serialize, table: &str) -> Result<(), Fai
 }
 
 /// The scenes of files and folders, in order of their paths.
+/// The files named, and those in the folders named that look like scenes.
 fn collect(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut out = Vec::new();
-    for p in paths {
-        if p.is_dir() {
-            let mut inside = Vec::new();
-            for entry in std::fs::read_dir(p).map_err(|e| format!("{}: {e}", p.display()))? {
-                let path = entry.map_err(|e| format!("{}: {e}", p.display()))?.path();
-                if path.is_dir() || is_scene(&path) {
-                    inside.push(path);
-                }
-            }
-            inside.sort();
-            out.extend(collect(&inside)?);
-        } else {
-            out.push(p.clone());
-        }
-    }
+    gather(paths, &mut out)?;
     if out.is_empty() {
         return Err("no scenes there".to_owned().into());
     }
     Ok(out)
 }
 
+fn gather(paths: &[PathBuf], out: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    for p in paths {
+        if !p.is_dir() {
+            out.push(p.clone());
+            continue;
+        }
+        let mut inside = Vec::new();
+        for entry in std::fs::read_dir(p).map_err(|e| format!("{}: {e}", p.display()))? {
+            let path = entry.map_err(|e| format!("{}: {e}", p.display()))?.path();
+            if path.is_dir() || is_scene(&path) {
+                inside.push(path);
+            }
+        }
+        inside.sort();
+        gather(&inside, out)?;
+    }
+    Ok(())
+}
+
+/// Structures and results lie beside scenes and are passed over; what cannot be read is not, so
+/// that its error is told.
 fn is_scene(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e == "toml" || e == "json")
+    if !path.extension().is_some_and(|e| e == "toml" || e == "json") {
+        return false;
+    }
+    let name = path.display().to_string();
+    let seen = std::fs::read(path).ok().and_then(|b| guise(&name, &b));
+    seen.is_none_or(|g| g == Guise::Scene)
 }
