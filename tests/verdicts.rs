@@ -419,7 +419,6 @@ fn in_unit(s: &Scene, unit: &Rat) -> Scene {
 
 /// A unit of length is none of the verdict's business, also far past the doubles.
 #[test]
-#[ignore = "long numbers: not yet run to its end"]
 fn verdicts_mind_no_unit() {
     let text = |name: &str| {
         let path = format!("{}/tests/data/{name}.toml", env!("CARGO_MANIFEST_DIR"));
