@@ -211,8 +211,6 @@ struct Taken {
 
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
 const FINE: f64 = 0.25;
-/// Steps that together may gain nothing, each by itself much.
-const SWINGS: [usize; 3] = [2, 4, 6];
 /// Of what a program promises, the part of a direction followed must gain this much at least.
 const KEEPS: f64 = 0.1;
 /// Bisections of a step's scale.
@@ -401,17 +399,9 @@ impl<'a> Run<'a> {
                 break;
             }
             last_gain = double(&gain);
-            // Where other corners face each other a step later, what some steps gain others may
-            // take back, over and over: together they gain nothing.
-            let taken_back = |count: usize| {
-                let last = out.steps.len().checked_sub(count);
-                last.is_some_and(|from| {
-                    let sum = out.steps[from..].iter().map(|s| &s.gain);
-                    sum.fold(Rat::zero(), |s, g| s + g).abs() < rules.gain
-                })
-            };
-            let swings = gain.sign() < 0 && SWINGS.into_iter().any(taken_back);
-            if gain.abs() < rules.gain || swings {
+            // A step that loses has restored constraints that the last ones overreached; what the
+            // next would gain it would overreach again, over and over.
+            if gain < rules.gain {
                 out.ending = self.settled(taken.promise);
                 break;
             }
