@@ -184,6 +184,9 @@ pub(super) fn reference(scene: &Scene) -> Vec2 {
     given.unwrap_or_else(|| scene.pawls[0].hinge.clone())
 }
 
+/// How a way ends that a limit stopped.
+const UNDECIDED: &str = "undecided";
+
 fn comparison(
     scene: &Scene,
     phases: &[PhaseForces],
@@ -206,6 +209,14 @@ fn comparison(
             .map(|p| read(&p.resistance))
             .reduce(Peak::max)
     };
+    // A way that was not run to its end has no largest resistance to compare.
+    if phases
+        .iter()
+        .chain(way_back)
+        .any(|p| p.outcome == UNDECIDED)
+    {
+        return None;
+    }
     let there = most(&mut phases.iter().filter(|p| !is_back(p)))?;
     let back = most(&mut phases.iter().filter(is_back).chain(way_back))?;
     let (ratio, easier) = match (&there, &back) {

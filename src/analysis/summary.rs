@@ -142,8 +142,9 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
         let mut rows = vec![head.map(str::to_owned)];
         let row = |p: &PhaseForces| {
             let of = |f: fn(&super::forces::RootPeak) -> &Bound| {
-                let peak = p.peak.as_ref();
-                peak.map_or_else(String::new, |e| decimal(f(e)))
+                // What a limit stopped has no peaks, only what was seen until then.
+                let peak = p.peak.as_ref().filter(|_| p.outcome != "undecided");
+                peak.map_or_else(|| "—".to_owned(), |e| decimal(f(e)))
             };
             let worked = p.lost_in_snaps.as_ref();
             [
