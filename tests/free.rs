@@ -3,15 +3,17 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/clear.rs"]
+mod clear;
 mod common;
 #[path = "common/world/mod.rs"]
 mod world;
 
+use clear::{clear, solids};
 use common::count;
 use snapfit::contact::Chart;
 use snapfit::contact::{ObstacleShape, PawlShape};
 use snapfit::face::Method as Way;
-use snapfit::geometry::{Polygon, Vec2, interiors_intersect};
 use snapfit::motion::friction::regions;
 use snapfit::motion::{Angle, EventKind, Method, Options, Seen, simulate, slices};
 use snapfit::number::Rat;
@@ -237,36 +239,6 @@ fn f_does_not_depend_on_the_listing() {
     assert!(checked > 50);
 }
 
-/// Whether the pawl is clear of all obstacles and strictly between its stops, by the polygons.
-fn clear(scene: &Scene, solids: &[Polygon], pawl: usize, slice: &Slice, c: &Configuration) -> bool {
-    let p = &scene.pawls[pawl];
-    if let Some((lo, hi)) = &p.limits {
-        let u = match c.chart {
-            Chart::Rest => Some(c.x.clone()),
-            Chart::Back if c.x.is_zero() => None,
-            Chart::Back => Some(-c.x.recip()),
-        };
-        if u.is_none_or(|u| u <= *lo || u >= *hi) {
-            return false;
-        }
-    }
-    let hinge = &slice.frame.p0 + &slice.frame.v.scale(&c.t);
-    let ring: Vec<Vec2> = p
-        .vertices
-        .iter()
-        .map(|v| {
-            let turned = (v - &p.hinge).rotate_tan_half(&c.x);
-            let turned = match c.chart {
-                Chart::Back => -&turned,
-                Chart::Rest => turned,
-            };
-            &turned + &hinge
-        })
-        .collect();
-    let moved = Polygon::new(ring, Vec::new());
-    !solids.iter().any(|o| interiors_intersect(&moved, o))
-}
-
 fn draw(r: &mut Rng, slice: &Slice) -> Configuration {
     Configuration {
         chart: *r.pick(&Chart::BOTH),
@@ -282,11 +254,7 @@ fn membership_is_what_the_polygons_say() {
     let (mut points, mut inside, mut blocked, mut elsewhere) = (0, 0, 0, 0);
     each(count(25_000), 13_000_000, &mut |seed, scene, seen| {
         let f = seen.free.as_ref().unwrap();
-        let solids: Vec<Polygon> = scene
-            .obstacles
-            .iter()
-            .map(|o| Polygon::new(o.vertices.clone(), o.holes.clone()))
-            .collect();
+        let solids = solids(scene);
         let mut r = Rng::new(seed);
         for k in 0..25 {
             let c = draw(&mut r, &seen.slice);
@@ -328,11 +296,7 @@ fn intervals_are_what_the_polygons_say() {
     let (mut found, mut gaps) = (0, 0);
     each(count(20_000), 14_000_000, &mut |seed, scene, seen| {
         let f = seen.free.as_ref().unwrap();
-        let solids: Vec<Polygon> = scene
-            .obstacles
-            .iter()
-            .map(|o| Polygon::new(o.vertices.clone(), o.holes.clone()))
-            .collect();
+        let solids = solids(scene);
         let mut r = Rng::new(seed);
         let t = draw(&mut r, &seen.slice).t;
         let Some(list) = f.intervals(&seen.slice, &t) else {

@@ -10,6 +10,7 @@ use std::process::{Command, Output, Stdio};
 
 const OPTIMAL: &str = "Maximize\n profit: 3 x + 2 y\nSubject To\n c1: x + y <= 4\n \
     c2: x + 3 y <= 6\n c3: x <= 3.1\nEnd\n";
+const RELAXED: &str = "Maximize\n x\nSubject To\n c: 2 x <= 5\nGenerals\n x\nEnd\n";
 const INFEASIBLE: &str = "Minimize\n x\nSubject To\n c1: x + y <= 1\n c2: x + y >= 2\nEnd\n";
 const UNBOUNDED: &str = "Maximize\n x + y\nSubject To\n c1: x - y <= 1\nEnd\n";
 
@@ -82,6 +83,7 @@ fn no_number_can_be_changed() {
     for (name, model, more) in [
         ("optimal", OPTIMAL, &["--values"][..]),
         ("plain", OPTIMAL, &[]),
+        ("relaxed", RELAXED, &[]),
         ("infeasible", INFEASIBLE, &[]),
         ("unbounded", UNBOUNDED, &[]),
         ("bounds", OPTIMAL, &["--accuracy", "bounds"]),
@@ -158,8 +160,7 @@ fn the_model_is_never_overwritten() {
 
 #[test]
 fn integers_are_relaxed_aloud() {
-    let text = "Maximize\n x\nSubject To\n c: 2 x <= 5\nGenerals\n x\nEnd\n";
-    let folder = folder("integers", text);
+    let folder = folder("integers", RELAXED);
     let output = snapfit(&folder, &["lp", "m.lp"]);
     assert!(stderr(&output).contains("relaxed"), "{}", stderr(&output));
     let quiet = snapfit(&folder, &["lp", "m.lp", "--quiet"]);

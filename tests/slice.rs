@@ -6,13 +6,15 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "common/clear.rs"]
+mod clear;
 mod common;
 #[path = "common/world/mod.rs"]
 mod world;
 
+use clear::{clear, solids};
 use common::count;
 use snapfit::contact::Chart;
-use snapfit::geometry::{Polygon, Vec2, interiors_intersect};
 use snapfit::motion::{Method, Options, Seen, simulate, slices};
 use snapfit::number::Rat;
 use snapfit::report::json::{Provenance, ResultDocument};
@@ -89,40 +91,6 @@ fn each_free(n: usize, first: u64, see: &mut dyn FnMut(u64, &Scene, &Slice, &Fre
     }
 }
 
-/// Whether the pawl is clear of all obstacles and between its stops, by the polygons.
-fn clear(scene: &Scene, pawl: usize, slice: &Slice, c: &Configuration) -> bool {
-    let p = &scene.pawls[pawl];
-    if let Some((lo, hi)) = &p.limits {
-        let u = match c.chart {
-            Chart::Rest => Some(c.x.clone()),
-            Chart::Back if c.x.is_zero() => None,
-            Chart::Back => Some(-c.x.recip()),
-        };
-        if u.is_none_or(|u| u <= *lo || u >= *hi) {
-            return false;
-        }
-    }
-    let hinge = &slice.frame.p0 + &slice.frame.v.scale(&c.t);
-    let ring: Vec<Vec2> = p
-        .vertices
-        .iter()
-        .map(|v| {
-            let turned = (v - &p.hinge).rotate_tan_half(&c.x);
-            let turned = if c.chart == Chart::Back {
-                -&turned
-            } else {
-                turned
-            };
-            &turned + &hinge
-        })
-        .collect();
-    let moved = Polygon::new(ring, Vec::new());
-    !scene
-        .obstacles
-        .iter()
-        .any(|o| interiors_intersect(&moved, &Polygon::new(o.vertices.clone(), o.holes.clone())))
-}
-
 fn draw(r: &mut Rng, slice: &Slice) -> Configuration {
     Configuration {
         chart: *r.pick(&Chart::BOTH),
@@ -146,7 +114,7 @@ fn members_are_free() {
                     Whereabouts::Inside => {
                         inside += 1;
                         assert!(
-                            clear(scene, pawl, slice, &c),
+                            clear(scene, &solids(scene), pawl, slice, &c),
                             "seed {seed} {c:?}\n{}",
                             scene.to_toml()
                         );
@@ -250,7 +218,7 @@ fn cells(
             x: Rat::from_f64(x),
             t: t.clone(),
         };
-        let free = hi - lo > 1e-9 && clear(scene, pawl, slice, &c);
+        let free = hi - lo > 1e-9 && clear(scene, &solids(scene), pawl, slice, &c);
         out.push((lo, hi, c, free));
     }
     if n == 0 {
@@ -259,7 +227,7 @@ fn cells(
             x: Rat::frac(1, 7919),
             t: t.clone(),
         };
-        let free = clear(scene, pawl, slice, &c);
+        let free = clear(scene, &solids(scene), pawl, slice, &c);
         out.push((-1.0, 3.0, c, free));
     }
     out

@@ -2,6 +2,7 @@
 
 use super::bound::Bound;
 use super::handbook::Handbook;
+use crate::motion::OutcomeKind;
 use crate::report::Num;
 use crate::report::json::ContactDocument;
 use schemars::JsonSchema;
@@ -166,6 +167,13 @@ pub struct PhaseForces {
     pub lost_in_snaps: Option<Bound>,
     /// Evenly spaced instants strictly inside the phase.
     pub history: Vec<Sample>,
+}
+
+impl PhaseForces {
+    /// Whether a limit stopped the motion in it: what its peaks are then nobody knows.
+    pub(super) fn stopped(&self) -> bool {
+        self.outcome == OutcomeKind::Undecided.name()
+    }
 }
 
 /// Suprema over a phase.

@@ -184,9 +184,6 @@ pub(super) fn reference(scene: &Scene) -> Vec2 {
     given.unwrap_or_else(|| scene.pawls[0].hinge.clone())
 }
 
-/// How a way ends that a limit stopped.
-const UNDECIDED: &str = "undecided";
-
 fn comparison(
     scene: &Scene,
     phases: &[PhaseForces],
@@ -210,11 +207,7 @@ fn comparison(
             .reduce(Peak::max)
     };
     // A way that was not run to its end has no largest resistance to compare.
-    if phases
-        .iter()
-        .chain(way_back)
-        .any(|p| p.outcome == UNDECIDED)
-    {
+    if phases.iter().chain(way_back).any(PhaseForces::stopped) {
         return None;
     }
     let there = most(&mut phases.iter().filter(|p| !is_back(p)))?;

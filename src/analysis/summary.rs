@@ -143,7 +143,7 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
         let row = |p: &PhaseForces| {
             let of = |f: fn(&super::forces::RootPeak) -> &Bound| {
                 // What a limit stopped has no peaks, only what was seen until then.
-                let peak = p.peak.as_ref().filter(|_| p.outcome != "undecided");
+                let peak = p.peak.as_ref().filter(|_| !p.stopped());
                 peak.map_or_else(|| "—".to_owned(), |e| decimal(f(e)))
             };
             let worked = p.lost_in_snaps.as_ref();

@@ -35,6 +35,13 @@ fn form(model: &Model, claim: &Claim, result: &Value) -> Result<(), Rejection> {
     word("sense", &[sense])?;
     count("rows", model.rows.len())?;
     count("columns", model.columns.len())?;
+    if result["relaxed"].as_bool().unwrap_or(false) != model.relaxed {
+        return reject("`relaxed` is not what the model's integers say");
+    }
+    let ignored = model.ignored_rhs.as_ref().map(ToString::to_string);
+    if result["ignored_objective_rhs"].as_str() != ignored.as_deref() {
+        return reject("`ignored_objective_rhs` is not the model's");
+    }
     let enclosed = matches!(claim.certificate, Certificate::Bounds { .. });
     match (enclosed, claim.status) {
         (true, Status::Optimal) => word("accuracy", &["bounds"]),
