@@ -105,6 +105,7 @@ pub(crate) struct Kernel {
     pub(super) frame_near: FastMap<(u64, usize), u32>,
     pub(super) local: FastMap<NumId, (u32, Approx)>,
     pub(super) framed: FastMap<(CurveId, u32), (Int, Int)>,
+    pub(super) beside: FastMap<(CurveId, u32), Option<(Approx, Approx)>>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
     pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,

@@ -159,7 +159,7 @@ impl Kernel {
             return Ordering::Equal;
         }
         self.stats.numbers_exact += 1;
-        if let Some(order) = self.cells_apart(x, y) {
+        if let Some(order) = self.framed_apart(x, y).or_else(|| self.cells_apart(x, y)) {
             return order;
         }
         if self.same_root(x, y) || self.same_root(y, x) {

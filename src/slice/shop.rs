@@ -228,21 +228,24 @@ impl<K: Kernel> std::fmt::Debug for Shop<K> {
 }
 
 impl<K: Kernel> Shop<K> {
+    /// A patch, which is kept: friction asks for those that the state follows.
     fn patch(&self, i: u32) -> &Patch<K::Num> {
-        self.patches[i as usize].get_or_init(|| {
-            let b = self.builder.borrow();
-            let (pair, charts) = &self.pairs[i as usize];
-            let patch = pair.patch(&b.frame, &b.pawl, &b.obstacles);
-            Box::new(Patch {
-                charts: *charts,
-                ..patch
-            })
-        })
+        self.patches[i as usize].get_or_init(|| Box::new(self.make(i)))
     }
+    fn make(&self, i: u32) -> Patch<K::Num> {
+        let b = self.builder.borrow();
+        let (pair, charts) = &self.pairs[i as usize];
+        let patch = pair.patch(&b.frame, &b.pawl, &b.obstacles);
+        Patch {
+            charts: *charts,
+            ..patch
+        }
+    }
+    /// The arcs of a patch; the patch itself, a quarter of all that an arc needs, is not kept for them.
     fn made(&self, i: u32) -> &[Arc<K>] {
         self.made[i as usize].get_or_init(|| {
-            let patch = self.patch(i);
-            let arcs = self.builder.borrow_mut().cut(&self.curves, patch);
+            let patch = self.make(i);
+            let arcs = self.builder.borrow_mut().cut(&self.curves, &patch);
             arcs.into()
         })
     }
