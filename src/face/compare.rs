@@ -18,6 +18,9 @@ pub(super) struct Core {
     pub(super) half: f64,
 }
 
+/// So many points where curves touch are kept in mind, those asked for last.
+const TOUCHES: usize = 8;
+
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
     above: [Approx; 5],
@@ -305,18 +308,10 @@ impl Kernel {
         if matches!((self.slope(c, x) - self.slope(d, x)).sign(), Some(-1 | 1)) {
             return 1;
         }
-        let (Some(m), Some(mut h)) = (self.equation(x), self.diff_small(c, d)) else {
+        let (Some(m), Some(h)) = (self.equation(x), self.diff_small(c, d)) else {
             return 1;
         };
-        let mut order = 1;
-        while order < 4 {
-            match derivative_of(&h) {
-                Some(next) if next != [0; 5] && vanishes(&next, &m) == Some(true) => h = next,
-                _ => break,
-            }
-            order += 1;
-        }
-        order
+        further_multiplicity(h, &m)
     }
 
     /// P₁Q₂ − P₂Q₁, whatever the denominators.
@@ -419,7 +414,69 @@ impl Kernel {
             out.push(x);
             return;
         }
-        self.all_crossings(c, d, out);
+        if !self.shared_touch((c, d), &h, (lo - margin, hi + margin), known, out) {
+            out.truncate(from);
+            self.all_crossings(c, d, out);
+        }
+    }
+
+    /// The roots of h where the two curves touch in a point in which others were seen to touch; false if they do not,
+    /// or the remaining roots are not told apart. Exact isolation is for the first pair that touches there.
+    fn shared_touch(
+        &mut self,
+        (c, d): (CurveId, CurveId),
+        h: &[Approx; 5],
+        range: (f64, f64),
+        known: &[NumId],
+        out: &mut Vec<NumId>,
+    ) -> bool {
+        let Some(exact) = self.diff_small(c, d) else {
+            return false;
+        };
+        let Some((at, order)) = (0..self.touches.len()).rev().find_map(|i| {
+            let order = multiplicity(&exact, &self.equation(self.touches[i])?);
+            (order >= 2).then_some((i, order))
+        }) else {
+            return false;
+        };
+        let x = self.touches.remove(at);
+        self.touches.push(x);
+        let (mut g, mut n) = (*h, 4);
+        while n > 0 && g[n].sign() == Some(0) {
+            n -= 1;
+        }
+        let mut others = Vec::new();
+        for &e in known {
+            if self.cmp(e, x).is_ne() {
+                others.push(e);
+            }
+        }
+        for e in others.iter().copied().chain(std::iter::repeat_n(x, order)) {
+            if n > 0 {
+                deflate(&mut g, &mut n, self.approx(e));
+            }
+        }
+        others.push(x);
+        let mut found = Roots {
+            at: [(0.0, 0.0); 4],
+            n: 0,
+        };
+        if !isolate(&g[..=n], range.0, range.1, &mut found) {
+            return false;
+        }
+        for &r in &found.at[..found.n] {
+            let clear = others.iter().all(|&e| {
+                let (a, b) = self.enclosure(e);
+                b < r.0 || r.1 < a
+            });
+            let id = clear.then(|| self.intern(c, d, h, r)).flatten();
+            match id {
+                Some(id) => out.push(id),
+                None => return false,
+            }
+        }
+        out.push(x);
+        true
     }
 
     /// The only root of h, if that is a square by its discriminant: named by its equation, so that all curves that
@@ -481,6 +538,10 @@ impl Kernel {
         for k in 0..n as u8 {
             ids.extend(self.root(&m, k).ok());
         }
+        self.touches.retain(|x| !ids.contains(x));
+        self.touches.extend(&ids);
+        let old = self.touches.len().saturating_sub(TOUCHES);
+        self.touches.drain(..old);
         Some((rest, ids))
     }
 
@@ -561,6 +622,28 @@ fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {
         out[k - 1] = h[k].checked_mul(k as i128)?;
     }
     Some(out)
+}
+
+/// How often h vanishes at the roots of m, as far as machine words tell and never said to be more than it is.
+fn multiplicity(h: &[i128; 5], m: &[i64; 3]) -> usize {
+    if vanishes(h, m) == Some(true) {
+        further_multiplicity(*h, m)
+    } else {
+        0
+    }
+}
+
+/// The same for an h that is known to vanish there.
+fn further_multiplicity(mut h: [i128; 5], m: &[i64; 3]) -> usize {
+    let mut order = 1;
+    while order < 4 {
+        match derivative_of(&h) {
+            Some(next) if next != [0; 5] && vanishes(&next, m) == Some(true) => h = next,
+            _ => break,
+        }
+        order += 1;
+    }
+    order
 }
 
 #[inline]

@@ -109,6 +109,8 @@ pub(crate) struct Kernel {
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
     pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,
+    /// Where curves were last seen to touch, by equations of low degree.
+    pub(super) touches: Vec<NumId>,
     pub(crate) stats: Stats,
 }
 
