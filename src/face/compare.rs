@@ -491,39 +491,48 @@ impl Kernel {
         }
         let m = [Int::from(h1), Int::from(h2.checked_mul(2)?), Int::zero()];
         let x = self.root(&m, 0).ok()?;
-        let pair = self.pairs.entry((c, d)).or_default();
-        pair.complete = true;
-        if !pair.ids.contains(&x) {
-            pair.ids.push(x);
+        let ids = self.complete.entry((c, d)).or_default();
+        if !ids.contains(&x) {
+            ids.push(x);
         }
         Some(x)
     }
 
     /// The name of the only root of h in an enclosure; None where it may be confused with another.
     fn intern(&mut self, c: CurveId, d: CurveId, h: &[Approx; 5], r: (f64, f64)) -> Option<NumId> {
-        if let Some(pair) = self.pairs.get(&(c, d)) {
-            for &id in &pair.ids {
-                let n = &self.nums[id as usize];
-                if n.hi < r.0 || r.1 < n.lo {
-                    continue;
-                }
-                let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
-                let steep = [
-                    h[1],
-                    two(h[2]),
-                    h[3] * Approx::exact(3.0),
-                    h[4] * Approx::exact(4.0),
-                ];
-                // Monotone on both: one root.
-                return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+        for id in self.interned((c, d)) {
+            let n = &self.nums[id as usize];
+            if n.hi < r.0 || r.1 < n.lo {
+                continue;
             }
-            if pair.complete {
-                return None;
-            }
+            let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
+            let steep = [
+                h[1],
+                two(h[2]),
+                h[3] * Approx::exact(3.0),
+                h[4] * Approx::exact(4.0),
+            ];
+            // Monotone on both: one root.
+            return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+        }
+        if self.complete.contains_key(&(c, d)) {
+            return None;
         }
         let id = self.add(r.0, r.1, Def::Cross(c, d));
-        self.pairs.entry((c, d)).or_default().ids.push(id);
+        let before = self.pairs.insert((c, d), id);
+        self.next_cross.resize(id as usize, NumId::MAX);
+        self.next_cross.push(before.unwrap_or(NumId::MAX));
         Some(id)
+    }
+
+    /// The crossings of a pair that have names.
+    fn interned(&self, pair: (CurveId, CurveId)) -> impl Iterator<Item = NumId> + '_ {
+        let first = self.pairs.get(&pair).copied();
+        let next = |x: &NumId| self.next_cross.get(*x as usize).copied();
+        let one_by_one =
+            std::iter::successors(first, move |x| next(x).filter(|&y| y != NumId::MAX));
+        let at_once = self.complete.get(&pair).into_iter().flatten().copied();
+        one_by_one.chain(at_once)
     }
 
     /// The double roots of h, if it has any and none of a higher order, and what is left of h without them. They
@@ -548,15 +557,13 @@ impl Kernel {
     /// All real roots of h, exactly.
     #[cold]
     fn all_crossings(&mut self, c: CurveId, d: CurveId, out: &mut Vec<NumId>) {
-        let pair = self.pairs.entry((c, d)).or_default();
-        if !pair.complete {
-            pair.complete = true;
-            let before = pair.ids.clone();
+        if !self.complete.contains_key(&(c, d)) {
+            let before: Vec<NumId> = self.interned((c, d)).collect();
+            let mut ids = Vec::new();
             self.stats.pairs_exact += 1;
             let mut h = self.diff_poly(c, d);
             if let Some((rest, multiple)) = self.multiple_roots(&h) {
                 h = rest;
-                let ids = &mut self.pairs.entry((c, d)).or_default().ids;
                 ids.extend(multiple);
             }
             for r in h.real_roots() {
@@ -571,11 +578,12 @@ impl Kernel {
                 if same.is_none() {
                     let id = self.add(i.lo, i.hi, Def::Cross(c, d));
                     self.settle_value(id, r);
-                    self.pairs.entry((c, d)).or_default().ids.push(id);
+                    ids.push(id);
                 }
             }
+            self.complete.insert((c, d), ids);
         }
-        out.extend(self.pairs.get(&(c, d)).into_iter().flat_map(|p| &p.ids));
+        out.extend(self.interned((c, d)));
     }
 }
 

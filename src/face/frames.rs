@@ -44,7 +44,14 @@ impl Kernel {
             }
         }
         let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
-        let old = self.frame_near.get(&key).copied();
+        let mut old = self.frame_near.get(&key).copied();
+        if old.is_none() {
+            // The cluster may straddle the keys.
+            old = self.frame_beside(x, y, level);
+            old.into_iter().for_each(|f| {
+                self.frame_near.insert(key, f);
+            });
+        }
         if let Some(f) = old {
             if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                 return Some(o);
@@ -57,6 +64,17 @@ impl Kernel {
         let f = self.new_frame(x, LEVELS[level]);
         self.frame_near.insert(key, f);
         self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+    }
+
+    /// The last frame made, if that is of this level and lies about as near to two numbers as they are known.
+    fn frame_beside(&self, x: NumId, y: NumId, level: usize) -> Option<u32> {
+        let (x, y) = (self.enclosure(x), self.enclosure(y));
+        let (lo, hi) = (x.0.min(y.0), x.1.max(y.1));
+        let room = hi - lo;
+        let last = self.frames.last()?;
+        let near =
+            last.bits == u64::from(LEVELS[level]) && last.lo <= hi + room && lo - room <= last.hi;
+        near.then(|| self.frames.len() as u32 - 1)
     }
 
     /// The order of two numbers that were asked about before, which mostly are in one frame.

@@ -77,12 +77,6 @@ pub(super) struct Num {
     pub(super) def: Def,
 }
 
-#[derive(Default)]
-pub(super) struct PairRoots {
-    pub(super) ids: Vec<NumId>,
-    pub(super) complete: bool,
-}
-
 /// Curves, numbers and what is known about them.
 #[derive(Default)]
 pub(crate) struct Kernel {
@@ -108,7 +102,11 @@ pub(crate) struct Kernel {
     pub(super) beside: FastMap<(CurveId, u32), Option<(Approx, Approx)>>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
-    pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,
+    /// The crossing of a pair that was named last, and for each the one before it: there are many of these.
+    pub(super) pairs: FastMap<(CurveId, CurveId), NumId>,
+    pub(super) next_cross: Vec<NumId>,
+    /// All others, of the few pairs whose crossings were isolated exactly.
+    pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
     /// Where curves were last seen to touch, by equations of low degree.
     pub(super) touches: Vec<NumId>,
     pub(crate) stats: Stats,
@@ -450,7 +448,16 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
             q = b.scale(all.denom());
         }
     }
-    let content = p.content().gcd(&q.content());
+    // The shortest coefficients first: mostly two of them have no common divisor.
+    let mut coeffs: Vec<&Int> = p.coeffs().iter().chain(q.coeffs()).collect();
+    coeffs.sort_unstable_by_key(|c| c.bits());
+    let mut content = Int::zero();
+    for c in coeffs {
+        content = content.gcd(c);
+        if content.is_one() {
+            break;
+        }
+    }
     let content = if q.leading().is_some_and(|l| l.sign() < 0) {
         -content
     } else {
