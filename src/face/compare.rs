@@ -18,9 +18,6 @@ pub(super) struct Core {
     pub(super) half: f64,
 }
 
-/// So many points where curves touch are kept in mind, those asked for last.
-const TOUCHES: usize = 8;
-
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
     above: [Approx; 5],
@@ -433,14 +430,14 @@ impl Kernel {
         let Some(exact) = self.diff_small(c, d) else {
             return false;
         };
-        let Some((at, order)) = (0..self.touches.len()).rev().find_map(|i| {
-            let order = multiplicity(&exact, &self.equation(self.touches[i])?);
+        let Some((at, order)) = (0..self.hubs.len()).rev().find_map(|i| {
+            let order = multiplicity(&exact, &self.equation(self.hubs[i])?);
             (order >= 2).then_some((i, order))
         }) else {
             return false;
         };
-        let x = self.touches.remove(at);
-        self.touches.push(x);
+        let x = self.hubs.remove(at);
+        self.hubs.push(x);
         let (mut g, mut n) = (*h, 4);
         while n > 0 && g[n].sign() == Some(0) {
             n -= 1;
@@ -547,10 +544,9 @@ impl Kernel {
         for k in 0..n as u8 {
             ids.extend(self.root(&m, k).ok());
         }
-        self.touches.retain(|x| !ids.contains(x));
-        self.touches.extend(&ids);
-        let old = self.touches.len().saturating_sub(TOUCHES);
-        self.touches.drain(..old);
+        for &x in &ids {
+            self.add_hub(x);
+        }
         Some((rest, ids))
     }
 

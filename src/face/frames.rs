@@ -114,6 +114,7 @@ impl Kernel {
 
     fn new_frame(&mut self, x: NumId, bits: u32) -> u32 {
         let (lo, _) = self.exact(x).enclosure(bits);
+        self.add_hub(x);
         let bits = u64::from(bits);
         let at = lo.numer().shl(bits).div_rem_floor(lo.denom()).0;
         let i = Rat::new(at.clone(), Int::one().shl(bits)).interval();

@@ -107,8 +107,8 @@ pub(crate) struct Kernel {
     pub(super) next_cross: Vec<NumId>,
     /// All others, of the few pairs whose crossings were isolated exactly.
     pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
-    /// Where curves were last seen to touch, by equations of low degree.
-    pub(super) touches: Vec<NumId>,
+    /// Numbers with equations of low degree in which several pairs were seen to meet; see `add_hub`.
+    pub(super) hubs: Vec<NumId>,
     pub(crate) stats: Stats,
 }
 
