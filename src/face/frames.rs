@@ -160,13 +160,23 @@ impl Kernel {
         };
         let (frame, n) = (&self.frames[f as usize], &self.nums[x as usize]);
         let around = Approx::between(frame.lo.min(n.lo), frame.hi.max(n.hi));
-        let slope: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
-        let slope = horner(&slope, around);
+        let steep: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
+        let slope = horner(&steep, around);
         // One root where h is steep; it is x if anything is.
         if !matches!(slope.sign(), Some(-1 | 1)) {
             return None;
         }
-        let d = (-value).over(slope);
+        let mut d = (-value).over(slope);
+        // Now that x is known to be so near, its own enclosure, perhaps a wide one, no longer matters.
+        let reach = d.v.abs() + d.e;
+        let nearer = Approx::between((frame.lo - reach).next_down(), (frame.hi + reach).next_up());
+        let slope = horner(&steep, nearer);
+        if matches!(slope.sign(), Some(-1 | 1)) {
+            let again = (-value).over(slope);
+            if again.e < d.e {
+                d = again;
+            }
+        }
         if !(d.v.is_finite() && d.e.is_finite()) {
             return None;
         }
