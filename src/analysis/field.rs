@@ -94,6 +94,8 @@ pub(super) struct Field {
     pub(super) pawls: Vec<Body>,
     /// Cells looked at so far, times the corners in view.
     pub(super) spent: Cell<u64>,
+    /// How many it may be.
+    pub(super) allowed: Cell<u64>,
 }
 
 /// How much a cover may cost before the rest is left undecided; the paper's Fig. 5, extended,
@@ -177,6 +179,7 @@ impl Field {
                 .map(|(i, s)| body(i, s))
                 .collect(),
             spent: Cell::new(0),
+            allowed: Cell::new(WORK),
         }
     }
 
@@ -230,7 +233,7 @@ impl Field {
             if slab.lo >= root {
                 return true;
             }
-            if self.spent.get() > WORK
+            if self.spent.get() > self.allowed.get()
                 || grain
                     .deadline
                     .is_some_and(|d| std::time::Instant::now() >= d)

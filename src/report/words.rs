@@ -36,7 +36,7 @@ fn trim(text: &str) -> &str {
 }
 
 /// A true minus sign, as wide as a plus.
-fn minus(text: &str) -> String {
+pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn short(n: &Num) -> String {
 }
 
 /// `= 7/2`, or `≈ 1.41421`.
-fn equals(n: &Num) -> String {
+pub(crate) fn equals(n: &Num) -> String {
     match short(n).strip_prefix('≈') {
         Some(rounded) => format!("≈ {rounded}"),
         None => format!("= {}", short(n)),
