@@ -10,7 +10,6 @@ use crate::contact::{PawlShape, Ring};
 use crate::geometry::Vec2;
 use crate::number::{Interval, Rat};
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 /// What is in the model of a proof.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -240,16 +239,8 @@ impl Field {
             {
                 return false;
             }
-            let mut view = View {
-                field: self,
-                body,
-                w,
-                model,
-                slab,
-                grid,
-                near: self.near(body, w, slab),
-                known: BTreeMap::new(),
-            };
+            let near = self.near(body, w, slab);
+            let mut view = View::new(self, body, w, (model, grid, slab), &near);
             match view.advance(&live, first) {
                 Some(next) => live = next,
                 None => return false,

@@ -3,7 +3,7 @@
 //! The class is settled then, and no proof can make it weaker or stronger. What a designer still
 //! wants to see is which directions hold. So neighbouring single directions are compared, the
 //! flips between them isolated, and of the pieces that are left those that block are proven as in
-//! [`super::total`], as far as a smaller budget of work goes. A piece whose directions got out,
+//! [`super::total`], the widest first, as far as a smaller budget of work goes. A piece whose directions got out,
 //! wherever they were tried, is listed as `none`: nothing is claimed of it, so nothing needs proof.
 
 use super::classify::Verdict;
@@ -11,8 +11,9 @@ use super::total::{Arc, FLIPS, Sample, Search, simplest};
 use crate::motion::OutcomeKind;
 use crate::number::Rat;
 
-/// What proofs may cost beside a way out: they decide no class.
-const WORK: u64 = 200_000_000;
+/// What proofs may cost beside a way out, all together and one alone: they decide no class.
+const WORK: u64 = 100_000_000;
+const PROOF: u64 = WORK / 10;
 
 /// The narrowest piece that is halved, as a share of a quarter: 2 to minus this.
 const DEPTH: u32 = 16;
@@ -24,12 +25,27 @@ fn share(power: u32) -> Rat {
     Rat::from(2).pow(power).recip()
 }
 
+/// A piece whose ends fare alike, not proven yet.
+struct Pending {
+    width: Rat,
+    ends: [Sample; 2],
+}
+
+impl Pending {
+    fn new(a: Sample, b: Sample) -> Pending {
+        Pending {
+            width: &b.s - &a.s,
+            ends: [a, b],
+        }
+    }
+}
+
 impl Search<'_> {
     /// Replaces the cover, and the flips, by those of the pieces.
     pub(super) fn pieces(&mut self) {
         self.cover.clear();
         self.field.spent.set(0);
-        self.field.allowed.set(WORK);
+        let mut pending: Vec<Pending> = Vec::new();
         self.samples
             .sort_by(|a, b| (a.quarter, &a.s).cmp(&(b.quarter, &b.s)));
         let known = self.samples.clone();
@@ -55,7 +71,7 @@ impl Search<'_> {
             }
             for pair in knots.windows(2) {
                 if pair[0].s < pair[1].s {
-                    self.between(pair[0].clone(), pair[1].clone());
+                    self.between(pair[0].clone(), pair[1].clone(), &mut pending);
                 }
                 from = pair[1].s.clone();
             }
@@ -63,9 +79,38 @@ impl Search<'_> {
                 self.put(quarter, &from, &Rat::one(), None, None);
             }
         }
+        // Kept by width: the last is the widest.
+        pending.sort_by(|a, b| a.width.cmp(&b.width));
+        while let Some(next) = pending.pop() {
+            let [a, b] = next.ends;
+            let mut more = Vec::new();
+            self.piece(a, b, &mut more);
+            for m in more {
+                let at = pending.partition_point(|p| p.width <= m.width);
+                pending.insert(at, m);
+            }
+        }
+        self.joined();
     }
 
-    /// Appends a piece; one that goes on as the piece before it is joined to that.
+    /// Puts the arcs in order, and joins neighbours of which the same is said.
+    fn joined(&mut self) {
+        let mut arcs = std::mem::take(&mut self.cover);
+        arcs.sort_by(|a, b| (a.quarter, &a.from).cmp(&(b.quarter, &b.from)));
+        for arc in arcs {
+            let alike = |a: &&mut Arc| {
+                let claims = a.verdict.is_some_and(|v| v != Verdict::None);
+                let same = a.verdict == arc.verdict && a.middle == arc.middle;
+                !claims && same && a.quarter == arc.quarter && a.to == arc.from
+            };
+            match self.cover.last_mut().filter(alike) {
+                Some(last) => last.to = arc.to,
+                None => self.cover.push(arc),
+            }
+        }
+    }
+
+    /// Adds a piece, if there is anything of it.
     fn put(
         &mut self,
         quarter: u8,
@@ -74,36 +119,26 @@ impl Search<'_> {
         verdict: Option<Verdict>,
         middle: Option<(OutcomeKind, Option<usize>)>,
     ) {
-        if from >= to {
-            return;
+        if from < to {
+            self.cover.push(Arc {
+                quarter,
+                from: from.clone(),
+                to: to.clone(),
+                verdict,
+                middle,
+            });
         }
-        let joins = |a: &&mut Arc| {
-            a.quarter == quarter && a.to == *from && a.verdict == verdict && a.middle == middle
-        };
-        if verdict.is_none_or(|v| v == Verdict::None)
-            && let Some(last) = self.cover.last_mut().filter(joins)
-        {
-            last.to = to.clone();
-            return;
-        }
-        self.cover.push(Arc {
-            quarter,
-            from: from.clone(),
-            to: to.clone(),
-            verdict,
-            middle,
-        });
     }
 
     /// The pieces between two decided directions of one quarter.
-    fn between(&mut self, a: Sample, b: Sample) {
+    fn between(&mut self, a: Sample, b: Sample, pending: &mut Vec<Pending>) {
         let quarter = a.quarter;
         if &b.s - &a.s > share(COARSE) {
             let mid = Rat::midpoint(&a.s, &b.s);
-            return self.parted(a, mid, b);
+            return self.parted(a, mid, b, pending);
         }
         if a.verdict == b.verdict {
-            return self.piece(a, b);
+            return pending.push(Pending::new(a, b));
         }
         if self.flips.len() >= FLIPS || self.ground.late() {
             return self.put(quarter, &a.s, &b.s, None, None);
@@ -118,17 +153,13 @@ impl Search<'_> {
             (_, Verdict::None) => high_end.s = low_end.s.clone(),
             _ => {}
         }
-        self.piece(a, low_end.clone());
+        pending.push(Pending::new(a, low_end.clone()));
         self.put(quarter, &low_end.s, &high_end.s, None, None);
-        if high_end.verdict == b.verdict {
-            self.piece(high_end, b);
-        } else {
-            self.between(high_end, b);
-        }
+        self.between(high_end, b, pending);
     }
 
     /// The pieces on both sides of a direction that is tried now.
-    fn parted(&mut self, a: Sample, mid: Rat, b: Sample) {
+    fn parted(&mut self, a: Sample, mid: Rat, b: Sample, pending: &mut Vec<Pending>) {
         let quarter = a.quarter;
         match self.tried(quarter, &mid) {
             Some((verdict, _, (kind, _)))
@@ -139,15 +170,15 @@ impl Search<'_> {
                     s: mid,
                     verdict,
                 };
-                self.between(a, mid.clone());
-                self.between(mid, b);
+                self.between(a, mid.clone(), pending);
+                self.between(mid, b, pending);
             }
             _ => self.put(quarter, &a.s, &b.s, None, None),
         }
     }
 
     /// A piece whose ends fare alike.
-    fn piece(&mut self, a: Sample, b: Sample) {
+    fn piece(&mut self, a: Sample, b: Sample, pending: &mut Vec<Pending>) {
         let (quarter, width) = (a.quarter, &b.s - &a.s);
         if width.sign() <= 0 {
             return;
@@ -156,7 +187,7 @@ impl Search<'_> {
             let end = Some((OutcomeKind::Completed, None));
             return self.put(quarter, &a.s, &b.s, Some(Verdict::None), end);
         }
-        let spent = self.field.spent.get() > WORK || width <= share(DEPTH);
+        let spent = self.field.spent.get() >= WORK || width <= share(DEPTH);
         // A direction about the middle with few digits.
         let quarter_of_it = &width * &Rat::frac(1, 4);
         let mid = simplest(&(&a.s + &quarter_of_it), Some(&(&b.s - &quarter_of_it)));
@@ -178,8 +209,8 @@ impl Search<'_> {
             verdict,
         };
         if verdict != a.verdict {
-            self.between(a, mid.clone());
-            return self.between(mid, b);
+            self.between(a, mid.clone(), pending);
+            return self.between(mid, b, pending);
         }
         let arc = Arc {
             quarter,
@@ -189,10 +220,12 @@ impl Search<'_> {
             middle: Some(middle),
         };
         let depth = (0..DEPTH).find(|d| width >= share(*d)).unwrap_or(DEPTH);
+        let allowed = self.field.spent.get() + PROOF;
+        self.field.allowed.set(allowed.min(WORK));
         if let Some(proven) = self.prove(&arc, verdict, time, depth) {
             return self.put(quarter, &a.s, &b.s, Some(proven), Some(middle));
         }
-        self.piece(a, mid.clone());
-        self.piece(mid, b);
+        pending.push(Pending::new(a, mid.clone()));
+        pending.push(Pending::new(mid, b));
     }
 }

@@ -6,6 +6,10 @@ use super::json::{
 };
 use super::num::{Exact, Num};
 
+/// What a reader of results in doubles has to know.
+pub(crate) const UNPROVEN: &str =
+    "computed in doubles with a tolerance: not proven, and may be wrong";
+
 /// A double to so many significant digits, without trailing zeros.
 pub(crate) fn digits(x: f64, significant: usize) -> String {
     if x == 0.0 || !x.is_finite() {
