@@ -4,7 +4,8 @@
 //! circle is cut into arcs. An exact motion in the middle of an arc says what to prove and about
 //! when; the proof for the whole arc is that of `cells`, which follows every successor in
 //! certified intervals. An arc that resists is halved, down to a bound on depth and time. One exact
-//! way out settles the question at once: the class is then `none`.
+//! way out settles the class, which is then `none`; what the rest of the circle does is told all
+//! the same ([`super::pieces`]).
 
 use super::classify::{Verdict, direction};
 use super::escape::{Ground, Start};
@@ -25,8 +26,9 @@ pub struct Arc {
     pub from: Rat,
     /// End.
     pub to: Rat,
-    /// What is proven of every direction of the arc: blocked at least so firmly. None where nothing
-    /// is.
+    /// What is proven of every direction of the arc: blocked at least so firmly. `Verdict::None`
+    /// claims nothing: every direction of the arc that was tried gets out. None where nothing is
+    /// known.
     pub verdict: Option<Verdict>,
     /// How the exact motion in its middle ends, and by which pawl.
     pub middle: Option<(OutcomeKind, Option<usize>)>,
@@ -96,7 +98,7 @@ impl Arc {
 pub struct Total {
     /// The weakest verdict met; None if time ran out before any.
     pub class: Option<Verdict>,
-    /// The arcs, in order round the circle. Empty where a way out was found.
+    /// The arcs, in order round the circle.
     pub cover: Vec<Arc>,
     /// A direction that gets out.
     pub escape: Option<Vec2>,
@@ -175,17 +177,24 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         cover: Vec::new(),
         escape: None,
         samples: Vec::new(),
+        flips: Vec::new(),
     };
     search.run();
+    if search.escape.is_some() {
+        search.pieces();
+    }
     search
         .samples
         .sort_by(|a, b| (a.quarter, &a.s).cmp(&(b.quarter, &b.s)));
     search
         .samples
         .dedup_by(|a, b| (a.quarter, &a.s) == (b.quarter, &b.s));
-    let flips = search.flips();
+    if search.escape.is_none() {
+        search.between_samples();
+    }
     let class = search.weakest;
     let escape = search.escape;
+    // Nothing is weaker than a way out.
     let undecided_width = search
         .cover
         .iter()
@@ -196,23 +205,21 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         class,
         cover: search.cover,
         escape,
-        flips,
+        flips: search.flips,
         samples: search.samples,
         distance,
         undecided_width,
     }
 }
 
-/// How many flips are isolated, and the most pairs of pawl and obstacle corners of a scene whose
-/// flips are looked for beside a way out.
-const FLIPS: usize = 32;
-const SMALL: usize = 1000;
+/// How many flips are isolated.
+pub(super) const FLIPS: usize = 32;
 
 /// The verdict of a direction, the time at which it is blocked, how and by whom.
-type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
+pub(super) type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
 
 /// The fraction with the least denominator strictly between 0 ≤ a < b (None: no upper end).
-fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
+pub(super) fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
     let whole = Rat::from(a.numer().div_rem_floor(a.denom()).0);
     let next = &whole + &Rat::one();
     match b {
@@ -248,29 +255,29 @@ fn short_direction(quarter: u8, from: &Rat, to: &Rat) -> Vec2 {
     }
 }
 
-struct Search<'a> {
-    ground: &'a Ground<'a>,
-    start: &'a Start,
-    distance2: Rat,
+pub(super) struct Search<'a> {
+    pub(super) ground: &'a Ground<'a>,
+    pub(super) start: &'a Start,
+    pub(super) distance2: Rat,
     /// In the field's unit, as all double times here.
     distance: f64,
     unit: Rat,
-    field: Field,
-    weakest: Option<Verdict>,
-    cover: Vec<Arc>,
-    escape: Option<Vec2>,
-    samples: Vec<Sample>,
+    pub(super) field: Field,
+    pub(super) weakest: Option<Verdict>,
+    pub(super) cover: Vec<Arc>,
+    pub(super) escape: Option<Vec2>,
+    pub(super) samples: Vec<Sample>,
+    pub(super) flips: Vec<Flip>,
 }
 
 impl Search<'_> {
     fn run(&mut self) {
         // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
         let samples = 8;
-        let small = self.pairs() <= SMALL;
         for quarter in 0..4 {
             for k in 0..samples {
                 let s = Rat::frac(k, samples);
-                if self.sample(quarter, &s).is_none() && (!small || self.escape.is_none()) {
+                if self.tried(quarter, &s).is_none() {
                     return;
                 }
             }
@@ -296,7 +303,6 @@ impl Search<'_> {
             };
             self.cover(whole, 0);
             if self.escape.is_some() {
-                self.cover.clear();
                 return;
             }
         }
@@ -318,20 +324,10 @@ impl Search<'_> {
                 self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
                 if d.verdict == Verdict::None {
                     self.escape = Some(w);
-                    self.cover.clear();
                     return;
                 }
             }
         }
-    }
-
-    /// Pairs of corners of pawls and obstacles: how large the scene is.
-    fn pairs(&self) -> usize {
-        let scene = self.ground.scene;
-        let mine: usize = scene.pawls.iter().map(|p| p.vertices.len()).sum();
-        let holes = |o: &crate::scene::Obstacle| o.holes.iter().map(Vec::len).sum::<usize>();
-        let theirs = scene.obstacles.iter().map(|o| o.vertices.len() + holes(o));
-        mine * theirs.sum::<usize>()
     }
 
     /// The directions along the obstacles' edges, both ways.
@@ -352,9 +348,7 @@ impl Search<'_> {
     }
 
     /// Isolates the flips between neighbouring samples.
-    fn flips(&mut self) -> Vec<Flip> {
-        let width = Rat::from(2).pow(60).recip();
-        let mut out = Vec::new();
+    fn between_samples(&mut self) {
         let n = self.samples.len();
         for i in 0..n {
             let (a, b) = (self.samples[i].clone(), self.samples[(i + 1) % n].clone());
@@ -364,64 +358,80 @@ impl Search<'_> {
                 1 if b.s.is_zero() => Rat::one(),
                 _ => continue,
             };
-            if a.verdict == b.verdict || out.len() >= FLIPS {
-                continue;
-            }
-            let (mut low, mut high) = (
-                a.clone(),
-                Sample {
-                    quarter: a.quarter,
+            if a.verdict != b.verdict && self.flips.len() < FLIPS {
+                let quarter = a.quarter;
+                let high = Sample {
+                    quarter,
                     s: end,
                     ..b
-                },
-            );
-            while &high.s - &low.s > width {
-                let s = Rat::midpoint(&low.s, &high.s);
-                let w = Arc::unit(low.quarter, &s);
-                let d = direction(self.ground, self.start, &w, &self.distance2, false);
-                if d.open || self.ground.late() {
-                    break;
-                }
-                let mid = Sample {
-                    quarter: low.quarter,
-                    s,
-                    verdict: d.verdict,
                 };
-                if mid.verdict == low.verdict {
-                    low = mid;
-                } else {
-                    high = mid;
-                }
+                let flip = self.isolate(a, high);
+                self.flips.push(flip);
             }
-            let w = short_direction(low.quarter, &low.s, &high.s);
-            let short = w.x.denom().bits() + w.y.numer().bits() < 48
-                && w.x.numer().bits() + w.y.denom().bits() < 48;
-            let critical = short.then(|| {
-                let d = direction(self.ground, self.start, &w, &self.distance2, false);
-                (w, d.verdict)
-            });
-            out.push(Flip {
-                sides: [low, high],
-                critical,
-            });
         }
-        out
+    }
+
+    /// Two directions of one quarter with different verdicts, brought together: what the later
+    /// one's verdict is may change on the way.
+    pub(super) fn isolate(&self, mut low: Sample, mut high: Sample) -> Flip {
+        let width = Rat::from(2).pow(60).recip();
+        while &high.s - &low.s > width {
+            let s = Rat::midpoint(&low.s, &high.s);
+            let w = Arc::unit(low.quarter, &s);
+            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            if d.open || self.ground.late() {
+                break;
+            }
+            let mid = Sample {
+                quarter: low.quarter,
+                s,
+                verdict: d.verdict,
+            };
+            if mid.verdict == low.verdict {
+                low = mid;
+            } else {
+                high = mid;
+            }
+        }
+        let w = short_direction(low.quarter, &low.s, &high.s);
+        let short = w.x.denom().bits() + w.y.numer().bits() < 48
+            && w.x.numer().bits() + w.y.denom().bits() < 48;
+        let critical = short.then(|| {
+            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            (w, d.verdict)
+        });
+        Flip {
+            sides: [low, high],
+            critical,
+        }
     }
 
     /// The verdict of one direction with the time at which it is blocked; None if it gets out, or
     /// the time is up.
     fn sample(&mut self, quarter: u8, s: &Rat) -> Option<Met> {
+        let met = self.tried(quarter, s)?;
+        match (met.0, met.2.0) {
+            (Verdict::None, OutcomeKind::Completed) => None,
+            _ => Some(met),
+        }
+    }
+
+    /// How one direction fares; None where the time is up. What is not blocked and does not run
+    /// its length either is open.
+    pub(super) fn tried(&mut self, quarter: u8, s: &Rat) -> Option<Met> {
         if self.ground.late() {
             return None;
         }
         let w = Arc::unit(quarter, s);
         let d = direction(self.ground, self.start, &w, &self.distance2, false);
+        let end = (d.run.outcome.kind, d.run.outcome.pawl);
         if d.open {
-            return Some((
-                Verdict::None,
-                self.distance,
-                (d.run.outcome.kind, d.run.outcome.pawl),
-            ));
+            // A force that cannot be told from the limit is open as well.
+            let kind = match end.0 {
+                OutcomeKind::Completed => OutcomeKind::Undecided,
+                kind => kind,
+            };
+            return Some((Verdict::None, self.distance, (kind, end.1)));
         }
         self.samples.push(Sample {
             quarter,
@@ -431,7 +441,7 @@ impl Search<'_> {
         self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
         if d.verdict == Verdict::None {
             self.escape.get_or_insert(w);
-            return None;
+            return Some((Verdict::None, self.distance, end));
         }
         let time = match (&d.peak, d.verdict) {
             (Some((p, _)), Verdict::Force) => match &p.when {
@@ -440,7 +450,7 @@ impl Search<'_> {
             },
             _ => self.in_unit(&d.run.outcome.time),
         };
-        Some((d.verdict, time, (d.run.outcome.kind, d.run.outcome.pawl)))
+        Some((d.verdict, time, end))
     }
 
     /// An instant of a motion at unit speed, rounded up.
@@ -486,7 +496,13 @@ impl Search<'_> {
     }
 
     /// Tries to prove the arc blocked, as firmly as its middle is or else as the class needs.
-    fn prove(&self, arc: &Arc, verdict: Verdict, time: f64, depth: u32) -> Option<Verdict> {
+    pub(super) fn prove(
+        &self,
+        arc: &Arc,
+        verdict: Verdict,
+        time: f64,
+        depth: u32,
+    ) -> Option<Verdict> {
         let w = arc.directions();
         let scale = self.field.reach();
         // Lateral uncertainty at the time of blocking, and slabs to match.

@@ -31,7 +31,7 @@ impl Time {
             return Time::from(num.eval(&r) / den.eval(&r));
         }
         let at = x.interval();
-        let interval = num.eval_interval(at) / den.eval_interval(at);
+        let interval = Poly::quotient_over(&num, &den, at);
         Time(Arc::new(Inner {
             interval,
             form: Form::Ratio {

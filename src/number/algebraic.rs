@@ -219,7 +219,7 @@ impl Algebraic {
             Rational(k) => p.sign_at(&k.value),
             RootOf(root) => root.sign_of(p),
             QuotientOf(q) => {
-                if let Some(s) = p.eval_interval(self.interval()).sign() {
+                if let Some(s) = p.sign_over(self.interval()) {
                     filter::settled(Stage::Double);
                     return s;
                 }
@@ -280,7 +280,7 @@ impl Algebraic {
             return Algebraic::from(Rat::zero());
         }
         let x = root.enclosure();
-        let q = num.eval_interval(x) / den.eval_interval(x);
+        let q = Poly::quotient_over(num, den, x);
         let size = q.lo.abs().min(q.hi.abs());
         let useful = q.is_finite() && q.sign().is_some() && q.width() <= size * 2f64.powi(-36);
         let (num, den) = (num.clone(), den.clone());
@@ -383,7 +383,7 @@ impl Quotient {
         let p = p.as_ref().unwrap_or(&root.poly);
         let resultant = quotient_polynomial(p, num, den);
         let x = root.enclosure();
-        let rough = num.eval_interval(x) / den.eval_interval(x);
+        let rough = Poly::quotient_over(num, den, x);
         let mut bits = grid(x, 64);
         let mut refiner = root.refine();
         pick(&resultant, rough, || {

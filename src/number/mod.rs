@@ -14,6 +14,7 @@ pub mod literal;
 mod long;
 pub(crate) mod modular;
 mod poly;
+mod quadratic;
 mod rat;
 mod refine;
 mod root;

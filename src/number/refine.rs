@@ -45,6 +45,14 @@ impl Span {
             hi: hi.lo,
         })
     }
+    /// Doubles around it.
+    pub(crate) fn hull(&self) -> Interval {
+        let e = -(self.e as i64);
+        Interval {
+            lo: self.lo.interval_shifted(e).lo,
+            hi: self.hi.interval_shifted(e).hi,
+        }
+    }
     pub(crate) fn low(&self) -> Rat {
         Rat::dyadic(self.lo.clone(), -(self.e as i64))
     }

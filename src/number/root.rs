@@ -12,7 +12,7 @@ use super::{Int, Interval, Poly, Rat};
 use std::sync::{Arc, OnceLock};
 
 /// How wide, for its size, a double enclosure may be: some dozen units in the last place.
-const NARROW: f64 = 1e-14;
+pub(super) const NARROW: f64 = 1e-14;
 
 /// Invariant: `poly` is primitive and square-free with a positive leading coefficient; it has exactly one root
 /// in the open interval `span`, none at the ends, so `sign_lo` ≠ 0 is its sign at the lower end and −sign_lo
@@ -70,6 +70,15 @@ impl Root {
     pub(crate) fn enclosed(poly: Arc<Poly>, x: Interval, sign_lo: i32) -> Root {
         let root = Root::new(poly, Span::from_doubles(x), sign_lo);
         let _ = root.enclosure.set((x, None));
+        root
+    }
+    /// With an isolating interval that is narrow for the root's size: its hull in doubles is the enclosure.
+    pub(super) fn spanned(poly: Arc<Poly>, span: Span, sign_lo: i32) -> Root {
+        let x = span.hull();
+        let root = Root::new(poly, span, sign_lo);
+        if x.is_finite() {
+            let _ = root.enclosure.set((x, None));
+        }
         root
     }
     /// The one root that a square-free polynomial is proven to have in an interval of doubles.
@@ -220,7 +229,7 @@ impl Root {
     }
     /// Exact sign of a polynomial at the root: an interval first, then a gcd for zero, then refinement.
     pub(crate) fn sign_of(&self, p: &Poly) -> i32 {
-        if let Some(s) = p.eval_interval(self.enclosure()).sign() {
+        if let Some(s) = p.sign_over(self.enclosure()) {
             filter::settled(Stage::Double);
             return s;
         }
