@@ -184,7 +184,7 @@ impl Int {
         }
     }
     /// k where self is 2^k.
-    fn log2(&self) -> Option<u64> {
+    pub(super) fn log2(&self) -> Option<u64> {
         let z = self.trailing_zeros()?;
         (self.sign() > 0 && self.bits() == z + 1).then_some(z)
     }

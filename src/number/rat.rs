@@ -170,6 +170,9 @@ impl Rat {
     /// Unless a < b.
     pub fn short_between(a: &Rat, b: &Rat) -> Rat {
         assert!(a < b, "no number lies between {a} and {b}");
+        if a.sign() < 0 && b.sign() > 0 {
+            return Rat::zero();
+        }
         // The least j lies near −log2(b − a): start where a grid point cannot be sure to be missed.
         let width = b - a;
         let guess = width.den.bits() as i64 - width.num.bits() as i64 - 2;
@@ -178,12 +181,27 @@ impl Rat {
             let k = raw_floor_shifted(a, j) + Int::one();
             (Rat::dyadic(k.clone(), -(j as i64)) < *b).then_some(k)
         };
-        // A grid of step < b − a always hits; a coarser one may, by luck: look down for the coarsest.
+        // A grid of step < b − a always hits; a coarser one may, by luck: the coarsest is found by
+        // ever longer steps down, and by halving the last one (finer grids hold the points of coarser ones).
         while fits(j).is_none() {
             j += 1;
         }
-        while j > 0 && fits(j - 1).is_some() {
-            j -= 1;
+        let (mut misses, mut step) = (None, 1);
+        while misses.is_none() && j > 0 {
+            let down = j.saturating_sub(step);
+            if fits(down).is_some() {
+                (j, step) = (down, 2 * step);
+            } else {
+                misses = Some(down);
+            }
+        }
+        while let Some(m) = misses.filter(|m| j - m > 1) {
+            let middle = m.midpoint(j);
+            if fits(middle).is_some() {
+                j = middle;
+            } else {
+                misses = Some(middle);
+            }
         }
         let first = fits(j).expect("the loops above end at a grid that hits");
         // Of the hits on this grid the one nearest zero.
@@ -353,11 +371,15 @@ impl Rat {
 
 /// floor(a·2^j).
 fn raw_floor_shifted(a: &Rat, j: u64) -> Int {
-    a.num.shl(j).div_rem_floor(&a.den).0
+    match a.den.log2() {
+        Some(k) if k <= j => a.num.shl(j - k),
+        Some(k) => a.num.shr(k - j),
+        None => a.num.shl(j).div_rem_floor(&a.den).0,
+    }
 }
 /// ceil(a·2^j).
 fn raw_ceil_shifted(a: &Rat, j: u64) -> Int {
-    -((-&a.num).shl(j).div_rem_floor(&a.den).0)
+    -raw_floor_shifted(&-a, j)
 }
 
 /// a/b + c/d with |a|, b, |c|, d < 2^62, both in lowest terms.

@@ -6,10 +6,9 @@
 
 use super::filter::{self, Stage};
 use super::float::FloatPoly;
-use super::modular::gcd_degree_bound;
 use super::refine::{Cell, Refiner, Span};
 use super::{Int, Interval, Poly, Rat};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// How wide, for its size, a double enclosure may be: some dozen units in the last place.
 pub(super) const NARROW: f64 = 1e-14;
@@ -22,6 +21,9 @@ pub(crate) struct Root {
     pub(crate) span: Span,
     sign_lo: i32,
     enclosure: OnceLock<(Interval, Option<Span>)>,
+    /// The narrowest interval that a refinement has ended with. Cells of a grid are what they are,
+    /// whatever they are found from.
+    sharp: Mutex<Option<Span>>,
     rational: OnceLock<Option<Rat>>,
     minimal: OnceLock<Arc<Poly>>,
     /// Another root that has been proven to be the same number; what is proven once is one handle
@@ -40,6 +42,7 @@ impl Root {
             span,
             sign_lo,
             enclosure,
+            sharp: Mutex::new(None),
             rational,
             minimal,
             same: OnceLock::new(),
@@ -94,15 +97,19 @@ impl Root {
             sign_lo,
         ))
     }
-    /// A refinement that starts from the narrow enclosure: always, so that no answer depends on what
-    /// was asked before.
+    /// A refinement that starts from the narrowest interval reached so far, and leaves its own there.
     pub(crate) fn refine(&self) -> Refiner<'_> {
-        if !filter::on() {
-            return Refiner::new(&self.poly, self.span.clone(), self.sign_lo);
-        }
-        self.enclosure();
-        let best = self.enclosure.get().and_then(|(_, s)| s.as_ref());
-        Refiner::new(&self.poly, best.unwrap_or(&self.span).clone(), self.sign_lo)
+        let sharp = self.sharp.lock().unwrap_or_else(|e| e.into_inner()).clone();
+        let start = sharp.unwrap_or_else(|| {
+            if filter::on() {
+                self.enclosure();
+            }
+            let best = self.enclosure.get().filter(|_| filter::on());
+            best.and_then(|(_, s)| s.as_ref())
+                .unwrap_or(&self.span)
+                .clone()
+        });
+        Refiner::new(&self.poly, start, self.sign_lo).keeping(&self.sharp)
     }
     /// Certified double enclosure, made once; the whole line where the filter is off.
     pub(crate) fn enclosure(&self) -> Interval {
@@ -205,9 +212,6 @@ impl Root {
         if p.is_zero() {
             return true;
         }
-        if gcd_degree_bound(&self.poly, p) == Some(0) {
-            return false;
-        }
         // A divisor of `poly` has no root at the ends and at most one, simple, between.
         let g = self.poly.gcd(p);
         g.coeffs().len() > 1 && self.span.changes_sign(&g)
@@ -220,9 +224,6 @@ impl Root {
         if Arc::ptr_eq(&self.poly, &o.poly) || self.poly == o.poly {
             // Ends of either interval are no roots, and each holds but one.
             return common.changes_sign(&self.poly);
-        }
-        if gcd_degree_bound(&self.poly, &o.poly) == Some(0) {
-            return false;
         }
         let g = self.poly.gcd(&o.poly);
         g.coeffs().len() > 1 && common.changes_sign(&g)
