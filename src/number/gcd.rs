@@ -64,8 +64,8 @@ impl Prime {
             acc
         }
     }
-    /// The gcd of two polynomials, leading coefficient `lead`; `a` and `b` are used up.
-    fn gcd(self, mut a: Vec<u64>, mut b: Vec<u64>, lead: u64) -> Vec<u64> {
+    /// The gcd of two polynomials, up to a factor.
+    fn gcd(self, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
         loop {
             if a.len() < b.len() {
                 std::mem::swap(&mut a, &mut b);
@@ -87,48 +87,74 @@ impl Prime {
                 }
             }
         }
+        a
+    }
+    /// Multiplied so that the leading coefficient is `lead`.
+    fn scale_to(self, a: &mut [u64], lead: u64) {
         if let Some(&l) = a.last() {
             let scale = self.mul(lead, self.inverse(l));
-            for x in &mut a {
+            for x in a {
                 *x = self.mul(*x, scale);
             }
         }
-        a
     }
 }
 
-/// What has been joined so far: coefficients modulo m, between −m/2 and m/2.
+/// Images joined so far, in mixed radix (Garner): a coefficient is d₀ + d₁·p₀ + d₂·p₀p₁ + …
 struct Joined {
-    coeffs: Vec<Int>,
-    m: Int,
+    digits: Vec<Vec<u64>>,
+    primes: Vec<Prime>,
 }
 
 impl Joined {
-    fn first(image: &[u64], prime: Prime) -> Joined {
-        let m = Int::from(prime.p());
-        let coeffs = image.iter().map(|&r| balanced(Int::from(r), &m)).collect();
-        Joined { coeffs, m }
-    }
-    /// Joins one more image (Garner). False if nothing was new in it.
-    fn join(&mut self, image: &[u64], prime: Prime) -> bool {
-        let inverse = prime.inverse(prime.residue(&self.m));
-        let mut news = false;
-        let all = &self.m * &Int::from(prime.p());
-        for (c, &r) in self.coeffs.iter_mut().zip(image) {
-            let step = prime.mul(prime.sub(r, prime.residue(c)), inverse);
-            if step != 0 {
-                news = true;
-                *c = balanced(&*c + &self.m * Int::from(step), &all);
-            }
+    fn new(terms: usize) -> Joined {
+        Joined {
+            digits: vec![Vec::with_capacity(4); terms],
+            primes: Vec::with_capacity(4),
         }
-        self.m = all;
-        news
     }
-}
-
-/// c or c − m, whichever is nearer to zero, for −m < c < m.
-fn balanced(c: Int, m: &Int) -> Int {
-    if c.shl(1) > *m { c - m } else { c }
+    /// Joins one more image.
+    fn join(&mut self, image: &[u64], prime: Prime) {
+        // The product of the primes before, modulo this one.
+        let known = self.primes.iter();
+        let product = known.fold(1, |m, q| prime.mul(m, prime.reduce(q.p() as u128)));
+        let inverse = if self.primes.is_empty() {
+            1
+        } else {
+            prime.inverse(product)
+        };
+        for (c, &r) in self.digits.iter_mut().zip(image) {
+            let mut value = 0;
+            for (d, q) in c.iter().zip(&self.primes).rev() {
+                value = prime.reduce(value as u128 * q.p() as u128 + *d as u128);
+            }
+            c.push(prime.mul(prime.sub(r, value), inverse));
+        }
+        self.primes.push(prime);
+    }
+    /// Whether the last digit of every coefficient is what the shortest number near zero has there: 0, or the greatest.
+    fn settled(&self) -> bool {
+        let Some(last) = self.primes.last() else {
+            return false;
+        };
+        let short = |d: &u64| *d == 0 || *d == last.p() - 1;
+        self.primes.len() > 1 && self.digits.iter().all(|c| c.last().is_some_and(short))
+    }
+    /// The integers of least size that the images are those of.
+    fn integers(&self) -> (Vec<Int>, Int) {
+        let m = self
+            .primes
+            .iter()
+            .fold(Int::one(), |m, q| m * Int::from(q.p()));
+        let value = |c: &Vec<u64>| {
+            let digits = c.iter().zip(&self.primes).rev();
+            let v = digits.fold(Int::zero(), |v, (d, q)| {
+                v * Int::from(q.p()) + Int::from(*d)
+            });
+            if v.shl(1) > m { v - &m } else { v }
+        };
+        (self.digits.iter().map(value).collect(), m)
+    }
 }
 
 /// Whether the primitive d divides p: if so the quotient is integral (Gauss).
@@ -175,37 +201,44 @@ pub(super) fn gcd(a: &Poly, b: &Poly) -> Option<Poly> {
             continue;
         }
         // Modulo every prime that spares the leading coefficients, the degree is at least the gcd's.
-        let scale = lead.as_ref().map_or(1, |l| prime.residue(l));
-        let mut image = prime.gcd(x, y, scale);
+        let mut image = prime.gcd(x, y);
         if image.len() == 1 {
             return Some(Poly::constant(Int::one()));
         }
-        if lead.is_none() {
-            let l = la.gcd(lb);
-            let r = prime.residue(&l);
-            for c in &mut image {
-                *c = prime.mul(*c, r);
-            }
-            lead = Some(l);
-        }
-        let news = match &mut joined {
-            Some(j) if image.len() > j.coeffs.len() => continue,
-            Some(j) if image.len() == j.coeffs.len() => j.join(&image, prime),
-            // Fewer terms: the images before were of unlucky primes.
-            _ => {
-                joined = Some(Joined::first(&image, prime));
-                true
-            }
-        };
-        let Some(j) = &joined else {
-            continue;
-        };
-        // Long coefficients are not complete before the leading one is.
-        let complete = lead.as_ref().is_some_and(|l| j.coeffs.last() == Some(l));
-        if !complete || (news && j.coeffs.iter().any(|c| c.bits() + 3 >= j.m.bits())) {
+        let terms = joined.as_ref().map(|j| j.digits.len());
+        if terms.is_some_and(|n| image.len() > n) {
             continue;
         }
-        let candidate = Poly::new(j.coeffs.clone()).primitive();
+        if terms != Some(image.len()) {
+            // The first image, or those before were of unlucky primes.
+            let (small, large) = if a.degree() <= b.degree() {
+                (a, b)
+            } else {
+                (b, a)
+            };
+            if small.coeffs().len() == image.len() {
+                let candidate = small.primitive();
+                if divides(&candidate, large) {
+                    return Some(candidate);
+                }
+            }
+            joined = Some(Joined::new(image.len()));
+        }
+        let j = joined.as_mut()?;
+        let lead = lead.get_or_insert_with(|| la.gcd(lb).abs());
+        prime.scale_to(&mut image, prime.residue(lead));
+        j.join(&image, prime);
+        // Not before the leading coefficient is complete are the others likely to be.
+        let bits = 60 * j.primes.len() as u64;
+        if lead.bits() >= bits {
+            continue;
+        }
+        let (coeffs, m) = j.integers();
+        let full = |c: &Int| c.bits() + 4 >= m.bits();
+        if !j.settled() && coeffs.iter().any(full) {
+            continue;
+        }
+        let candidate = Poly::new(coeffs).primitive();
         if divides(&candidate, a) && divides(&candidate, b) {
             return Some(candidate);
         }
