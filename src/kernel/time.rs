@@ -141,7 +141,7 @@ impl Time {
         let (lo, hi) = if a < b { (a, b) } else { (b, a) };
         let (i, j) = (lo.interval(), hi.interval());
         if i.below(&j) && i.hi.is_finite() && j.lo.is_finite() {
-            return Rat::short_between(&Rat::from_f64(i.hi), &Rat::from_f64(j.lo));
+            return Rat::short_between_doubles(i.hi, j.lo);
         }
         Algebraic::between(lo.exact(), hi.exact())
     }

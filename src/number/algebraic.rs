@@ -317,7 +317,7 @@ impl Algebraic {
         // Doubles are dyadic rationals.
         let (x, y) = (a.around().hi, b.around().lo);
         if x < y && x.is_finite() && y.is_finite() {
-            return Rat::short_between(&Rat::from_f64(x), &Rat::from_f64(y));
+            return Rat::short_between_doubles(x, y);
         }
         let mut bits = grid(a.around(), 64);
         let (mut u, mut v) = (a.narrowing(), b.narrowing());

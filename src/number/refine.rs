@@ -208,7 +208,8 @@ impl<'a> Refiner<'a> {
         };
         self.span = Span { lo, hi, e: fine };
         self.ends = Some((at_lo, at_hi));
-        self.t = 2 * t;
+        // A step cut short at the precision asked for says nothing against longer ones.
+        self.t = self.t.max(2 * t);
     }
 }
 

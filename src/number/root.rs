@@ -13,6 +13,9 @@ use std::sync::{Arc, Mutex, OnceLock};
 /// How wide, for its size, a double enclosure may be: some dozen units in the last place.
 pub(super) const NARROW: f64 = 1e-14;
 
+/// How many polynomials a root remembers to vanish there.
+const MOST_KNOWN: usize = 16;
+
 /// Invariant: `poly` is primitive and square-free with a positive leading coefficient; it has exactly one root
 /// in the open interval `span`, none at the ends, so `sign_lo` ≠ 0 is its sign at the lower end and −sign_lo
 /// that at the upper.
@@ -24,6 +27,8 @@ pub(crate) struct Root {
     /// The narrowest interval that a refinement has ended with. Cells of a grid are what they are,
     /// whatever they are found from.
     sharp: Mutex<Option<Span>>,
+    /// Polynomials proven to vanish here: what is proven once is known by name from then on.
+    vanishing: Mutex<Vec<Poly>>,
     rational: OnceLock<Option<Rat>>,
     minimal: OnceLock<Arc<Poly>>,
     /// Another root that has been proven to be the same number; what is proven once is one handle
@@ -43,6 +48,7 @@ impl Root {
             sign_lo,
             enclosure,
             sharp: Mutex::new(None),
+            vanishing: Mutex::new(Vec::new()),
             rational,
             minimal,
             same: OnceLock::new(),
@@ -234,7 +240,16 @@ impl Root {
             filter::settled(Stage::Double);
             return s;
         }
+        let known = || self.vanishing.lock().unwrap_or_else(|e| e.into_inner());
+        if filter::on() && (*p == *self.poly || known().contains(p)) {
+            filter::settled(Stage::Name);
+            return 0;
+        }
         if self.is_root_of(p) {
+            let mut known = known();
+            if known.len() < MOST_KNOWN {
+                known.push(p.clone());
+            }
             filter::settled_exactly(true, self.poly.most_bits().max(p.most_bits()));
             return 0;
         }
