@@ -9,6 +9,7 @@
 use super::approx::{Approx, horner};
 use super::frames::{Frame, scaled};
 use super::hash::FastMap;
+use super::places::Places;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
 
@@ -108,6 +109,8 @@ pub(crate) struct Kernel {
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
     pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,
+    /// Which curves are known to meet where.
+    pub(super) places: Places,
     pub(crate) stats: Stats,
 }
 
