@@ -7,6 +7,7 @@
 use super::approx::{Approx, horner};
 use super::isolate::{Roots, bernstein, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
+use crate::number::filter::{self, Stage};
 use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
@@ -168,8 +169,20 @@ impl Kernel {
 
     #[cold]
     fn cmp_at_near(&mut self, c: CurveId, d: CurveId, x: NumId) -> Ordering {
-        self.stats.heights_exact += 1;
         let root = self.find(x);
+        if self.places.alike(root, c, d) || self.places.alike(x, c, d) {
+            filter::settled(Stage::Name);
+            return Ordering::Equal;
+        }
+        let order = self.cmp_at_exactly(c, d, x, root);
+        if order.is_eq() {
+            self.places.unite(root, c, d);
+        }
+        order
+    }
+
+    fn cmp_at_exactly(&mut self, c: CurveId, d: CurveId, x: NumId, root: NumId) -> Ordering {
+        self.stats.heights_exact += 1;
         for id in [x, root] {
             if let Def::Cross(a, b) = self.nums[id as usize].def
                 && ((a, b) == (c, d) || (a, b) == (d, c))

@@ -9,6 +9,7 @@
 use super::approx::{Approx, horner};
 use super::frames::{Frame, scaled};
 use super::hash::FastMap;
+use super::places::Places;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
 
@@ -109,6 +110,8 @@ pub(crate) struct Kernel {
     pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
     /// Numbers with equations of low degree in which several pairs were seen to meet; see `add_hub`.
     pub(super) hubs: Vec<NumId>,
+    /// Which curves are known to meet where.
+    pub(super) places: Places,
     pub(crate) stats: Stats,
 }
 

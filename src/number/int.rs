@@ -184,7 +184,7 @@ impl Int {
         }
     }
     /// k where self is 2^k.
-    fn log2(&self) -> Option<u64> {
+    pub(super) fn log2(&self) -> Option<u64> {
         let z = self.trailing_zeros()?;
         (self.sign() > 0 && self.bits() == z + 1).then_some(z)
     }
@@ -380,7 +380,7 @@ impl Int {
                 f(v as u64);
                 f((v >> 64) as u64);
             }
-            Big(b) => b.words().into_iter().for_each(f),
+            Big(b) => b.for_each_word(f),
         }
     }
     /// |self| = (top + fraction)·2^shift with 0 ≤ fraction < 1, `top` of at most 64 bits and the

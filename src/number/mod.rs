@@ -7,6 +7,7 @@ mod backend;
 mod factor;
 pub mod filter;
 mod float;
+mod gcd;
 mod int;
 mod interval;
 mod isolate;

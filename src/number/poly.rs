@@ -9,8 +9,7 @@ use super::filter::{self, Stage};
 use super::int::ops;
 use super::isolate::isolate;
 use super::quadratic::quadratic_roots;
-use super::modular::gcd_degree_bound;
-use super::{Int, Interval, Rat, factor};
+use super::{Int, Interval, Rat, factor, gcd};
 use std::fmt;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -268,21 +267,18 @@ impl Poly {
         if other.is_zero() {
             return self.primitive();
         }
-        let bound = gcd_degree_bound(self, other);
-        if bound == Some(0) || self.coeffs.len() == 1 || other.coeffs.len() == 1 {
+        if self.coeffs.len() == 1 || other.coeffs.len() == 1 {
             return Poly::constant(Int::one());
+        }
+        if let Some(g) = gcd::gcd(self, other) {
+            return g;
         }
         let (a, b) = if self.coeffs.len() >= other.coeffs.len() {
             (self, other)
         } else {
             (other, self)
         };
-        let (a, b) = (a.primitive(), b.primitive());
-        // The smaller one divides the larger: the usual reason for a bound this high.
-        if bound.is_none_or(|d| Some(d) == b.degree()) && a.div_exact(&b).is_some() {
-            return b;
-        }
-        subresultant_gcd(a, b)
+        subresultant_gcd(a.primitive(), b.primitive())
     }
     /// Remainder of lc(d)^(n−m+1)·self by d, for n ≥ m.
     fn pseudo_rem(&self, d: &Poly) -> Poly {
@@ -445,7 +441,7 @@ impl Poly {
 }
 
 /// Primitive gcd of primitive polynomials, deg a ≥ deg b (Brown & Traub; Cohen, algorithm 3.3.1).
-fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
+pub(super) fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
     let (mut g, mut h) = (Int::one(), Int::one());
     loop {
         let delta = (a.coeffs.len() - b.coeffs.len()) as u32;

@@ -204,6 +204,7 @@ impl Free {
             uprights: &strip.uprights,
             glue: &strip.glue,
             second: &strip.second,
+            names: &strip.names,
         };
         let how = Way {
             method: way,
