@@ -12,7 +12,7 @@ use crate::motion::OutcomeKind;
 use crate::number::Rat;
 
 /// What proofs may cost beside a way out, all together and one alone: they decide no class.
-const WORK: u64 = 100_000_000;
+const WORK: u64 = 50_000_000;
 const PROOF: u64 = WORK / 10;
 
 /// The narrowest piece that is halved, as a share of a quarter: 2 to minus this.

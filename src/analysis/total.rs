@@ -56,6 +56,16 @@ pub struct Flip {
 }
 
 impl Arc {
+    /// A quarter of the circle, of which nothing is known.
+    fn whole(quarter: u8) -> Arc {
+        Arc {
+            quarter,
+            from: Rat::zero(),
+            to: Rat::one(),
+            verdict: None,
+            middle: None,
+        }
+    }
     /// The unit vector at position s of a quarter.
     pub fn unit(quarter: u8, s: &Rat) -> Vec2 {
         let (one, s2) = (Rat::one(), s.square());
@@ -157,8 +167,9 @@ const MOST_SAMPLES: usize = 20_000;
 /// How often an arc may be halved: a quarter's 2⁻¹⁶ is about 10⁻⁵ radians.
 const DEPTH: u32 = 16;
 
-/// Decides every direction. `known` are verdicts already met on single directions.
-pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Total {
+/// Decides every direction. `family` are directions to look at first: they run as far as all
+/// others here, however short the way was over which they were decided before.
+pub fn total(ground: &Ground<'_>, start: &Start, family: &[Vec2]) -> Total {
     let scene = ground.scene;
     let asked = scene
         .classify
@@ -173,15 +184,19 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         distance: (&distance * &unit).interval().lo,
         field: Field::new(ground, start, &unit),
         unit,
-        weakest: known,
+        weakest: None,
         cover: Vec::new(),
         escape: None,
         samples: Vec::new(),
         flips: Vec::new(),
     };
-    search.run();
+    search.run(family);
     if search.escape.is_some() {
         search.pieces();
+    }
+    if search.cover.is_empty() {
+        // The time was up before any proof.
+        search.cover = (0..4).map(Arc::whole).collect();
     }
     search
         .samples
@@ -271,7 +286,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn run(&mut self) {
+    fn run(&mut self, family: &[Vec2]) {
         // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
         let samples = 8;
         for quarter in 0..4 {
@@ -285,23 +300,22 @@ impl Search<'_> {
         if self.escape.is_some() {
             return;
         }
-        for w in self.edges() {
+        for w in family.iter().cloned().chain(self.edges()) {
+            if self.ground.late() {
+                return;
+            }
             let d = direction(self.ground, self.start, &w, &self.distance2, false);
-            if d.verdict == Verdict::None && !d.open {
-                self.weakest = Some(Verdict::None);
+            if d.open {
+                continue;
+            }
+            self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+            if d.verdict == Verdict::None {
                 self.escape = Some(w);
                 return;
             }
         }
         for quarter in 0..4 {
-            let whole = Arc {
-                quarter,
-                from: Rat::zero(),
-                to: Rat::one(),
-                verdict: None,
-                middle: None,
-            };
-            self.cover(whole, 0);
+            self.cover(Arc::whole(quarter), 0);
             if self.escape.is_some() {
                 return;
             }
