@@ -233,7 +233,7 @@ fn a_way_out_is_named_and_the_rest_is_told() {
         .map(|v| width(Some(v)))
         .iter()
         .sum();
-    assert!(held > 1.0 && width(Some(Verdict::None)) > 0.5 && width(None) < 0.01);
+    assert!(held > 1.0 && width(Some(Verdict::None)) > 0.5 && width(None) < 0.1);
     let mut seed = 0x1234_5678_9ABC_DEF1u64;
     for _ in 0..count(10_000) {
         seed ^= seed << 13;

@@ -7,14 +7,15 @@
 //! way out settles the class, which is then `none`; what the rest of the circle does is told all
 //! the same ([`super::pieces`]).
 
-use super::classify::{Verdict, direction};
+use super::classify::{Direction, Verdict, direction};
 use super::escape::{Ground, Start};
 use super::field::{Directions, Field, Grain, Model};
 use crate::geometry::Vec2;
-use crate::motion::OutcomeKind;
+use crate::motion::{EventKind, OutcomeKind};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
 use crate::slice::Time;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// An arc of directions: from the quarter-turn `quarter` on, tan(φ/2) from `from` to `to`, in
 /// [0, 1].
@@ -43,6 +44,8 @@ pub struct Sample {
     pub s: Rat,
     /// How firmly it is blocked.
     pub verdict: Verdict,
+    /// What its motion meets, contact by contact: two motions alike in this differ in times only.
+    pub(super) course: u64,
 }
 
 /// Where the exact verdict changes: between two directions 2⁻⁶⁰ apart at most.
@@ -233,6 +236,18 @@ pub(super) const FLIPS: usize = 32;
 /// The verdict of a direction, the time at which it is blocked, how and by whom.
 pub(super) type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
 
+/// The events of a direction's motion with their contacts, in order, without their times.
+fn course(d: &Direction) -> u64 {
+    let mut hash = DefaultHasher::new();
+    for pawl in &d.run.pawls {
+        for e in pawl.events.iter().filter(|e| e.kind != EventKind::Graze) {
+            (e.kind, &e.contacts).hash(&mut hash);
+        }
+        u8::MAX.hash(&mut hash);
+    }
+    hash.finish()
+}
+
 /// The fraction with the least denominator strictly between 0 ≤ a < b (None: no upper end).
 pub(super) fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
     let whole = Rat::from(a.numer().div_rem_floor(a.denom()).0);
@@ -400,6 +415,7 @@ impl Search<'_> {
                 quarter: low.quarter,
                 s,
                 verdict: d.verdict,
+                course: course(&d),
             };
             if mid.verdict == low.verdict {
                 low = mid;
@@ -407,13 +423,19 @@ impl Search<'_> {
                 high = mid;
             }
         }
-        let w = short_direction(low.quarter, &low.s, &high.s);
-        let short = w.x.denom().bits() + w.y.numer().bits() < 48
-            && w.x.numer().bits() + w.y.denom().bits() < 48;
-        let critical = short.then(|| {
-            let d = direction(self.ground, self.start, &w, &self.distance2, false);
-            (w, d.verdict)
-        });
+        let few = |w: &Vec2| {
+            let bits = [&w.x, &w.y].map(|c| (c.numer().bits(), c.denom().bits()));
+            bits[0].1 + bits[1].0 < 48 && bits[0].0 + bits[1].1 < 48
+        };
+        let between = short_direction(low.quarter, &low.s, &high.s);
+        // Else one of the sides is, at the end of a quarter.
+        let sides = [&low, &high].map(|k| (Arc::unit(k.quarter, &k.s), k.verdict));
+        let critical = if few(&between) {
+            let d = direction(self.ground, self.start, &between, &self.distance2, false);
+            Some((between, d.verdict))
+        } else {
+            sides.into_iter().find(|(w, _)| few(w))
+        };
         Flip {
             sides: [low, high],
             critical,
@@ -451,6 +473,7 @@ impl Search<'_> {
             quarter,
             s: s.clone(),
             verdict: d.verdict,
+            course: course(&d),
         });
         self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
         if d.verdict == Verdict::None {
