@@ -253,7 +253,12 @@ pub fn classify_with_way(
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
         let ground = Ground::asked(scene, ask);
-        total(&ground, start, family.class)
+        let also: Vec<Vec2> = family
+            .directions
+            .iter()
+            .map(|d| d.velocity.clone())
+            .collect();
+        total(&ground, start, &also)
     });
     let weakest = family.directions.iter().min_by_key(|d| d.verdict);
     let relative_way = weakest.map(|d| (d.velocity.clone(), run_time(d)));

@@ -132,7 +132,7 @@ pub fn force_plot(doc: &ForcesDocument) -> String {
             y += 17.0;
         }
     }
-    let mut marks = vec!["below 0: the root is pulled along"];
+    let mut marks = vec!["→ ←: which way the root goes; below 0 it is pulled along"];
     if phases.iter().any(|p| !p.smooth.is_empty()) {
         marks.push("dashed: without friction");
     }
@@ -248,12 +248,16 @@ fn grid(page: &mut Svg, axis: &Axis) {
 /// The circle of directions: the cover's arcs by what is proven of them, single directions as
 /// dots, flips as ticks, the family as arrows.
 pub fn rose(doc: &ClassifyDocument) -> String {
-    let (width, height) = (740.0, 656.0);
+    let (width, height) = (740.0, 668.0);
     let mut page = Svg::new();
     let class = doc.class.unwrap_or("no class");
     let title = match doc.extent {
         Some(extent) => format!("{}: {extent} {class} diode", doc.scene),
         None => format!("{}: {class}", doc.scene),
+    };
+    let title = match doc.total {
+        Some("none") if doc.extent.is_some() => title + "; not in every direction",
+        _ => title,
     };
     page.text(28.0, 34.0, 17.0, INK, "start", true, &title);
     let (cx, cy, outer, inner) = (370.0, 316.0, 210.0, 145.0);
@@ -320,7 +324,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
     }
     if let Some(e) = &doc.escape {
         let phi = e[1].approx().atan2(e[0].approx());
-        page.arrow(at(phi, inner - 14.0), at(phi, outer + 40.0), "#c1121f");
+        page.arrow(at(phi, inner - 14.0), at(phi, outer + 34.0), "#c1121f");
     }
     let mut x = 28.0;
     for verdict in seen {
@@ -332,12 +336,22 @@ pub fn rose(doc: &ClassifyDocument) -> String {
         let red = "red: where the verdict flips, and arrows that get out";
         page.text(x, 601.0, 12.0, "#c1121f", "start", false, red);
     }
-    let note = "which way the root is moved from the end of the plan. Ring: whole arcs, proven to \
-                hold so firmly (none: not proven, got out wherever tried);";
-    page.text(28.0, 624.0, 11.0, MUTED, "start", false, note);
-    let note = "dots: single directions, decided exactly; arrows inside: the control family; \
-                arrow outside: a way out";
-    page.text(28.0, 640.0, 11.0, MUTED, "start", false, note);
+    let notes = [
+        "the angle says which way the root is moved from the end of the plan",
+        "ring: whole arcs, each proven to hold so firmly; none: got out wherever it was tried",
+        "dots: single directions, decided exactly; arrows inside: the control family; outside: a way out",
+    ];
+    for (k, note) in notes.into_iter().enumerate() {
+        page.text(
+            28.0,
+            622.0 + 15.0 * k as f64,
+            11.0,
+            MUTED,
+            "start",
+            false,
+            note,
+        );
+    }
     page.finish(width, height, &doc.scene, &title)
 }
 
@@ -346,7 +360,7 @@ fn marks(page: &mut Svg, at: &dyn Fn(f64, f64) -> [f64; 2], r: f64) {
     for k in 0..12 {
         let phi = f64::from(k) * std::f64::consts::PI / 6.0;
         page.line(at(phi, r), at(phi, r + 6.0), MUTED, 0.9, "");
-        let [x, y] = at(phi, r + 20.0);
+        let [x, y] = at(phi, r + 30.0);
         let text = match k {
             0 => "0° (+x)".to_owned(),
             3 => "90° (+y)".to_owned(),

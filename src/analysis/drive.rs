@@ -79,6 +79,44 @@ fn at(t: &Time, b: Bits) -> Fix {
 /// Values and slopes of the five quantities.
 type Five = [(Fix, Option<Fix>); QUANTITIES];
 
+/// The five quantities of some loads together, with their slopes: by their own variable where one
+/// is alone, else by time.
+fn summed(loads: &[Load], b: Bits) -> Five {
+    let single = loads.len() == 1;
+    let zero = || (b.int(0), Some(b.int(0)));
+    let mut sum = [zero(), zero(), zero(), zero()];
+    for l in loads {
+        let rate = l.clock.order(1);
+        for (total, q) in sum
+            .iter_mut()
+            .zip([&l.resistance, &l.force[0], &l.force[1], &l.torque])
+        {
+            total.0 = total.0.add(&q.order(0));
+            // By its own variable where it is alone, else by time.
+            let slope = if single {
+                Some(q.order(1))
+            } else {
+                q.order(1).div(&rate)
+            };
+            total.1 = total.1.as_ref().zip(slope).map(|(a, s)| a.add(&s));
+        }
+    }
+    let [(w, dw), (x, dx), (y, dy), (m, dm)] = sum;
+    let square = x.mul(&x).add(&y.mul(&y));
+    let two = b.int(2);
+    let slope = dx
+        .zip(dy)
+        .map(|(dx, dy)| x.mul(&dx).add(&y.mul(&dy)).mul(&two));
+    let minus = |d: &Option<Fix>| d.as_ref().map(Fix::neg);
+    [
+        (w.clone(), dw.clone()),
+        (w.neg(), minus(&dw)),
+        (square, slope),
+        (m.clone(), dm.clone()),
+        (m.neg(), minus(&dm)),
+    ]
+}
+
 impl Window<'_> {
     /// The variable of its cells at both ends: the position of the only contact, or time.
     fn ends(&self, b: Bits) -> Option<[Fix; 2]> {
@@ -109,40 +147,17 @@ impl Window<'_> {
     }
 
     fn five(&self, cell: [&Fix; 2], b: Bits) -> Option<Five> {
-        let loads = self.loads(cell, 2, b)?;
-        let single = loads.len() == 1;
-        let zero = || (b.int(0), Some(b.int(0)));
-        let mut sum = [zero(), zero(), zero(), zero()];
-        for l in &loads {
-            let rate = l.clock.order(1);
-            for (total, q) in
-                sum.iter_mut()
-                    .zip([&l.resistance, &l.force[0], &l.force[1], &l.torque])
-            {
-                total.0 = total.0.add(&q.order(0));
-                // By its own variable where it is alone, else by time.
-                let slope = if single {
-                    Some(q.order(1))
-                } else {
-                    q.order(1).div(&rate)
-                };
-                total.1 = total.1.as_ref().zip(slope).map(|(a, s)| a.add(&s));
-            }
+        Some(summed(&self.loads(cell, 2, b)?, b))
+    }
+
+    /// The five quantities over a sliver beside an end at which a single contact is on the edge of
+    /// its cone with the spring at rest.
+    fn beside(&self, late: bool, place: &Fix, b: Bits) -> Option<Five> {
+        let [s] = &self.slides[..] else { return None };
+        if self.t[usize::from(late)] != s.part.t[usize::from(late)] {
+            return None;
         }
-        let [(w, dw), (x, dx), (y, dy), (m, dm)] = sum;
-        let square = x.mul(&x).add(&y.mul(&y));
-        let two = b.int(2);
-        let slope = dx
-            .zip(dy)
-            .map(|(dx, dy)| x.mul(&dx).add(&y.mul(&dy)).mul(&two));
-        let minus = |d: &Option<Fix>| d.as_ref().map(Fix::neg);
-        Some([
-            (w.clone(), dw.clone()),
-            (w.neg(), minus(&dw)),
-            (square, slope),
-            (m.clone(), dm.clone()),
-            (m.neg(), minus(&dm)),
-        ])
+        Some(summed(&[s.part.sliver(late, place, s.rig, b)?], b))
     }
 
     /// Upper bounds of the five quantities over a cell where some balance may be singular; None
@@ -248,10 +263,24 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best], stop: &dyn F
     let Some(ends) = w.ends(fine) else {
         return unsettled(w, best);
     };
-    // Loads grow past every bound only towards an end.
+    let (mut l, mut r) = (ends[0].hi(), ends[1].lo());
+    let forward = l <= r;
+    if !forward {
+        (l, r) = (ends[1].hi(), ends[0].lo());
+    }
+    // Loads grow past every bound only towards an end; where the contact begins on the edge of
+    // its cone they jump there, and stay finite.
     let mut singular = false;
-    for e in &ends {
-        match w.five([e, e], fine) {
+    let sliver = (&r - &l) * Rat::from(2).pow(goal + 8).recip();
+    for (late, e) in ends.iter().enumerate() {
+        let low = (late == 0) == forward;
+        let place = if low { &l + &sliver } else { &r - &sliver };
+        let five = w.five([e, e], fine).or_else(|| {
+            let five = w.beside(late == 1, &fine.rat(&place), fine)?;
+            *if low { &mut l } else { &mut r } = place;
+            Some(five)
+        });
+        match five {
             Some(five) => {
                 for (k, v) in five.iter().enumerate() {
                     best[k].attain(&v.0, || w.time(e, fine));
@@ -259,10 +288,6 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best], stop: &dyn F
             }
             None => singular = true,
         }
-    }
-    let (mut l, mut r) = (ends[0].hi(), ends[1].lo());
-    if l > r {
-        (l, r) = (ends[1].hi(), ends[0].lo());
     }
     if l >= r {
         return;
@@ -510,9 +535,10 @@ fn rubbed(
         let step = &whole * Rat::from(2).pow(goal / 2 + 8).recip();
         let low = (late == 0) == forward;
         let place = if low { &l + &step } else { &r - &step };
-        let Some(bit) = s.part.sliver(e, &b.rat(&place), s.rig, b) else {
+        let Some(near) = s.part.sliver(late == 1, &b.rat(&place), s.rig, b) else {
             return Work::Open;
         };
+        let bit = near.work.order(0).mul(&b.rat(&place).sub(e));
         sum = sum.add(&if low { bit } else { bit.neg() });
         *if low { &mut l } else { &mut r } = place;
     }

@@ -101,6 +101,10 @@ pub(super) struct Field {
 /// takes a few hundredths of it.
 const WORK: u64 = 2_000_000_000;
 
+/// Past so many pairs of sides within reach at once nothing is tried: their table would fill the
+/// memory, and the work would be over after a few cells anyway.
+const PAIRS: usize = 4_000_000;
+
 pub(super) struct Body {
     pub(super) sides: Vec<Side>,
     /// The hinge where the ways out begin.
@@ -240,6 +244,10 @@ impl Field {
                 return false;
             }
             let near = self.near(body, w, slab);
+            let seen = near.iter().flatten().filter(|n| **n).count();
+            if seen.saturating_mul(body.sides.len()) > PAIRS {
+                return false;
+            }
             let mut view = View::new(self, body, w, (model, grid, slab), &near);
             match view.advance(&live, first) {
                 Some(next) => live = next,

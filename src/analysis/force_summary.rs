@@ -20,14 +20,19 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
         return out;
     };
     let decimal = |b: &Bound| b.decimal(doc.digits);
+    let far = if doc.undecided {
+        " as far as it got"
+    } else {
+        ""
+    };
     let _ = writeln!(
         out,
-        "highest contact force {} ({}), highest torque {}",
+        "highest contact force{far} {} ({}), highest torque {}",
         decimal(&peak.force),
         peak.pawl,
         decimal(&peak.torque)
     );
-    for pawl in doc.pawls.iter().filter(|p| p.peak.is_some()) {
+    for pawl in doc.pawls.iter().filter(|p| !p.segments.is_empty()) {
         let _ = writeln!(out, "\n{}", bold(style, &format!("pawl “{}”", pawl.name)));
         let head = [
             "phase",
@@ -71,6 +76,15 @@ pub fn forces_summary(doc: &ForcesDocument, style: Style) -> String {
             "along travel: the force against the travel at the segment's largest deflection, \
              beside the handbook's formula for it\n",
         );
+        let mut parts: Vec<&str> = Vec::new();
+        for part in all().flat_map(|s| &s.handbook).flat_map(|h| &h.parts) {
+            if !parts.contains(part) {
+                parts.push(part);
+            }
+        }
+        if !parts.is_empty() {
+            let _ = writeln!(out, "what parts them: {}", parts.join("; "));
+        }
     }
     if let Some(root) = &doc.root {
         let phases: Vec<&PhaseForces> = root.phases.iter().chain(&root.way_back).collect();

@@ -19,7 +19,7 @@
 use super::fix::{Bits, Fix};
 use super::jet::Jet;
 use super::peak::theta;
-use super::stretch::{Stretch, Touch};
+use super::stretch::{Law, Stretch, Touch};
 use crate::contact::Chart;
 use crate::geometry::Vec2;
 use crate::number::{Algebraic, Rat};
@@ -284,22 +284,38 @@ impl<'a> Part<'a> {
         ])
     }
 
-    /// Work done over the sliver between an end at which θ and the balance's denominator both
+    /// Whether at an end the pawl is at rest and the balance's denominator vanishes too, exactly:
+    /// the contact begins, or ends, on the edge of its sticking cone.
+    fn balances(&self, late: bool, rig: &Rig) -> bool {
+        let s = self.stretch;
+        let zero = Rat::zero();
+        let Law::Graph {
+            turn,
+            rise,
+            epsilon,
+            ..
+        } = &s.law
+        else {
+            return false;
+        };
+        let rub = &rig.mu * &Rat::from(i64::from(epsilon * self.drag));
+        s.half_turn == 0
+            && self.ends[usize::from(late)].sign() == 0
+            && (turn.eval(&zero).abs() + rise.eval(&zero) * rub).is_zero()
+    }
+
+    /// The loads over the sliver between an end at which θ and the balance's denominator both
     /// vanish and a place near it: by Cauchy's mean value theorem their quotient is that of their
-    /// slopes somewhere between. None where the slopes do not tell.
-    pub(super) fn sliver(&self, end: &Fix, place: &Fix, rig: &Rig, b: Bits) -> Option<Fix> {
-        let x = end.join(place);
-        let one = b.int(1);
-        let t = self.terms(&x, &one, rig, 2, b)?;
+    /// slopes somewhere between. None where they do not both vanish, or the slopes do not tell.
+    pub(super) fn sliver(&self, late: bool, place: &Fix, rig: &Rig, b: Bits) -> Option<Load> {
+        if !self.balances(late, rig) {
+            return None;
+        }
+        let x = self.end(late, b).join(place);
+        let t = self.terms(&x, &b.int(1), rig, 2, b)?;
         let side = b.int(i64::from(self.stretch.side));
         let push = t.spring.order(1).mul(&side).div(&t.den.order(1))?;
-        let scale = Jet::constant(push, 1, b);
-        let rate = t.clock.order(1);
-        let along = self.divided(t, scale, b)?;
-        // The power along the way, times the clock's rate, times the width.
-        let speed = b.rat(&self.stretch.velocity.norm2()).sqrt()?;
-        let power = along.resistance.order(0).mul(&speed);
-        Some(power.mul(&rate).mul(&place.sub(end)))
+        self.divided(t, Jet::constant(push, 1, b), b)
     }
 
     /// Whether the work grows past every bound towards an end at which the contact force does: the

@@ -5,14 +5,16 @@
 //! flips between them isolated, and of the pieces that are left those that block are proven as in
 //! [`super::total`], the widest first, as far as a smaller budget of work goes. A piece whose directions got out,
 //! wherever they were tried, is listed as `none`: nothing is claimed of it, so nothing needs proof.
+//! Where neighbours get out by different courses more directions between them are tried, lest a
+//! narrow piece that holds be passed over.
 
 use super::classify::Verdict;
-use super::total::{Arc, FLIPS, Sample, Search, simplest};
+use super::total::{Arc, FLIPS, Flip, Met, Sample, Search, simplest};
 use crate::motion::OutcomeKind;
 use crate::number::Rat;
 
 /// What proofs may cost beside a way out, all together and one alone: they decide no class.
-const WORK: u64 = 100_000_000;
+const WORK: u64 = 30_000_000;
 const PROOF: u64 = WORK / 10;
 
 /// The narrowest piece that is halved, as a share of a quarter: 2 to minus this.
@@ -20,6 +22,11 @@ const DEPTH: u32 = 16;
 
 /// The share of a quarter, 2 to minus this, past which no two neighbours are left untried.
 const COARSE: u32 = 4;
+
+/// The same where ways out of different courses are neighbours, and how many directions may be
+/// tried in all to come to that.
+const FINE: u32 = 9;
+const TRIED: usize = 600;
 
 fn share(power: u32) -> Rat {
     Rat::from(2).pow(power).recip()
@@ -60,7 +67,7 @@ impl Search<'_> {
             knots.extend(end.map(|k| Sample {
                 quarter,
                 s: Rat::one(),
-                verdict: k.verdict,
+                ..k.clone()
             }));
             let mut from = Rat::zero();
             if knots.first().is_none_or(|k| k.s.sign() > 0) {
@@ -91,6 +98,10 @@ impl Search<'_> {
             }
         }
         self.joined();
+        self.flips.sort_by(|a, b| {
+            let at = |f: &Flip| (f.sides[0].quarter, f.sides[0].s.clone());
+            at(a).cmp(&at(b))
+        });
     }
 
     /// Puts the arcs in order, and joins neighbours of which the same is said.
@@ -158,22 +169,25 @@ impl Search<'_> {
         self.between(high_end, b, pending);
     }
 
+    /// A direction that is tried now; None where it is open or the time is up.
+    fn decided(&mut self, quarter: u8, s: &Rat) -> Option<(Sample, Met)> {
+        let met = self.tried(quarter, s)?;
+        // What is open leaves no sample.
+        if met.0 == Verdict::None && met.2.0 != OutcomeKind::Completed {
+            return None;
+        }
+        Some((self.samples.last()?.clone(), met))
+    }
+
     /// The pieces on both sides of a direction that is tried now.
     fn parted(&mut self, a: Sample, mid: Rat, b: Sample, pending: &mut Vec<Pending>) {
         let quarter = a.quarter;
-        match self.tried(quarter, &mid) {
-            Some((verdict, _, (kind, _)))
-                if verdict != Verdict::None || kind == OutcomeKind::Completed =>
-            {
-                let mid = Sample {
-                    quarter,
-                    s: mid,
-                    verdict,
-                };
+        match self.decided(quarter, &mid) {
+            Some((mid, _)) => {
                 self.between(a, mid.clone(), pending);
                 self.between(mid, b, pending);
             }
-            _ => self.put(quarter, &a.s, &b.s, None, None),
+            None => self.put(quarter, &a.s, &b.s, None, None),
         }
     }
 
@@ -183,34 +197,32 @@ impl Search<'_> {
         if width.sign() <= 0 {
             return;
         }
-        if a.verdict == Verdict::None {
-            let end = Some((OutcomeKind::Completed, None));
-            return self.put(quarter, &a.s, &b.s, Some(Verdict::None), end);
+        let free = a.verdict == Verdict::None;
+        let end = free.then_some((OutcomeKind::Completed, None));
+        let known = free.then_some(Verdict::None);
+        let spent = if free {
+            // Ways out of one course have nothing between them that one of them would not meet,
+            // most likely; else a narrow obstacle may lie there.
+            a.course == b.course || width <= share(FINE) || self.samples.len() > TRIED
+        } else {
+            self.field.spent.get() >= WORK || width <= share(DEPTH)
+        };
+        if spent {
+            return self.put(quarter, &a.s, &b.s, known, end);
         }
-        let spent = self.field.spent.get() >= WORK || width <= share(DEPTH);
         // A direction about the middle with few digits.
         let quarter_of_it = &width * &Rat::frac(1, 4);
         let mid = simplest(&(&a.s + &quarter_of_it), Some(&(&b.s - &quarter_of_it)));
-        let met = if spent {
-            None
-        } else {
-            self.tried(quarter, &mid)
-        };
-        let Some((verdict, time, middle)) = met else {
-            return self.put(quarter, &a.s, &b.s, None, None);
-        };
-        let open = verdict == Verdict::None && middle.0 != OutcomeKind::Completed;
-        if open {
-            return self.put(quarter, &a.s, &b.s, None, Some(middle));
-        }
-        let mid = Sample {
-            quarter,
-            s: mid,
-            verdict,
+        let Some((mid, (verdict, time, middle))) = self.decided(quarter, &mid) else {
+            return self.put(quarter, &a.s, &b.s, known, end);
         };
         if verdict != a.verdict {
             self.between(a, mid.clone(), pending);
             return self.between(mid, b, pending);
+        }
+        if free {
+            pending.push(Pending::new(a, mid.clone()));
+            return pending.push(Pending::new(mid, b));
         }
         let arc = Arc {
             quarter,

@@ -7,14 +7,15 @@
 //! way out settles the class, which is then `none`; what the rest of the circle does is told all
 //! the same ([`super::pieces`]).
 
-use super::classify::{Verdict, direction};
+use super::classify::{Direction, Verdict, direction};
 use super::escape::{Ground, Start};
 use super::field::{Directions, Field, Grain, Model};
 use crate::geometry::Vec2;
-use crate::motion::OutcomeKind;
+use crate::motion::{EventKind, OutcomeKind};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
 use crate::slice::Time;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// An arc of directions: from the quarter-turn `quarter` on, tan(φ/2) from `from` to `to`, in
 /// [0, 1].
@@ -43,6 +44,8 @@ pub struct Sample {
     pub s: Rat,
     /// How firmly it is blocked.
     pub verdict: Verdict,
+    /// What its motion meets, contact by contact: two motions alike in this differ in times only.
+    pub(super) course: u64,
 }
 
 /// Where the exact verdict changes: between two directions 2⁻⁶⁰ apart at most.
@@ -56,6 +59,16 @@ pub struct Flip {
 }
 
 impl Arc {
+    /// A quarter of the circle, of which nothing is known.
+    fn whole(quarter: u8) -> Arc {
+        Arc {
+            quarter,
+            from: Rat::zero(),
+            to: Rat::one(),
+            verdict: None,
+            middle: None,
+        }
+    }
     /// The unit vector at position s of a quarter.
     pub fn unit(quarter: u8, s: &Rat) -> Vec2 {
         let (one, s2) = (Rat::one(), s.square());
@@ -157,8 +170,9 @@ const MOST_SAMPLES: usize = 20_000;
 /// How often an arc may be halved: a quarter's 2⁻¹⁶ is about 10⁻⁵ radians.
 const DEPTH: u32 = 16;
 
-/// Decides every direction. `known` are verdicts already met on single directions.
-pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Total {
+/// Decides every direction. `family` are directions to look at first: they run as far as all
+/// others here, however short the way was over which they were decided before.
+pub fn total(ground: &Ground<'_>, start: &Start, family: &[Vec2]) -> Total {
     let scene = ground.scene;
     let asked = scene
         .classify
@@ -173,15 +187,19 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         distance: (&distance * &unit).interval().lo,
         field: Field::new(ground, start, &unit),
         unit,
-        weakest: known,
+        weakest: None,
         cover: Vec::new(),
         escape: None,
         samples: Vec::new(),
         flips: Vec::new(),
     };
-    search.run();
+    search.run(family);
     if search.escape.is_some() {
         search.pieces();
+    }
+    if search.cover.is_empty() {
+        // The time was up before any proof.
+        search.cover = (0..4).map(Arc::whole).collect();
     }
     search
         .samples
@@ -217,6 +235,18 @@ pub(super) const FLIPS: usize = 32;
 
 /// The verdict of a direction, the time at which it is blocked, how and by whom.
 pub(super) type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
+
+/// The events of a direction's motion with their contacts, in order, without their times.
+fn course(d: &Direction) -> u64 {
+    let mut hash = DefaultHasher::new();
+    for pawl in &d.run.pawls {
+        for e in pawl.events.iter().filter(|e| e.kind != EventKind::Graze) {
+            (e.kind, &e.contacts).hash(&mut hash);
+        }
+        u8::MAX.hash(&mut hash);
+    }
+    hash.finish()
+}
 
 /// The fraction with the least denominator strictly between 0 ≤ a < b (None: no upper end).
 pub(super) fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
@@ -271,7 +301,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn run(&mut self) {
+    fn run(&mut self, family: &[Vec2]) {
         // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
         let samples = 8;
         for quarter in 0..4 {
@@ -285,23 +315,22 @@ impl Search<'_> {
         if self.escape.is_some() {
             return;
         }
-        for w in self.edges() {
+        for w in family.iter().cloned().chain(self.edges()) {
+            if self.ground.late() {
+                return;
+            }
             let d = direction(self.ground, self.start, &w, &self.distance2, false);
-            if d.verdict == Verdict::None && !d.open {
-                self.weakest = Some(Verdict::None);
+            if d.open {
+                continue;
+            }
+            self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+            if d.verdict == Verdict::None {
                 self.escape = Some(w);
                 return;
             }
         }
         for quarter in 0..4 {
-            let whole = Arc {
-                quarter,
-                from: Rat::zero(),
-                to: Rat::one(),
-                verdict: None,
-                middle: None,
-            };
-            self.cover(whole, 0);
+            self.cover(Arc::whole(quarter), 0);
             if self.escape.is_some() {
                 return;
             }
@@ -386,6 +415,7 @@ impl Search<'_> {
                 quarter: low.quarter,
                 s,
                 verdict: d.verdict,
+                course: course(&d),
             };
             if mid.verdict == low.verdict {
                 low = mid;
@@ -393,13 +423,19 @@ impl Search<'_> {
                 high = mid;
             }
         }
-        let w = short_direction(low.quarter, &low.s, &high.s);
-        let short = w.x.denom().bits() + w.y.numer().bits() < 48
-            && w.x.numer().bits() + w.y.denom().bits() < 48;
-        let critical = short.then(|| {
-            let d = direction(self.ground, self.start, &w, &self.distance2, false);
-            (w, d.verdict)
-        });
+        let few = |w: &Vec2| {
+            let bits = [&w.x, &w.y].map(|c| (c.numer().bits(), c.denom().bits()));
+            bits[0].1 + bits[1].0 < 48 && bits[0].0 + bits[1].1 < 48
+        };
+        let between = short_direction(low.quarter, &low.s, &high.s);
+        // Else one of the sides is, at the end of a quarter.
+        let sides = [&low, &high].map(|k| (Arc::unit(k.quarter, &k.s), k.verdict));
+        let critical = if few(&between) {
+            let d = direction(self.ground, self.start, &between, &self.distance2, false);
+            Some((between, d.verdict))
+        } else {
+            sides.into_iter().find(|(w, _)| few(w))
+        };
         Flip {
             sides: [low, high],
             critical,
@@ -437,6 +473,7 @@ impl Search<'_> {
             quarter,
             s: s.clone(),
             verdict: d.verdict,
+            course: course(&d),
         });
         self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
         if d.verdict == Verdict::None {

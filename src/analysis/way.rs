@@ -20,7 +20,7 @@ use super::stretch::{Stretch, stretches};
 use crate::motion::{OutcomeKind, Trajectory};
 use crate::number::{Algebraic, Rat};
 use crate::report::Num;
-use crate::report::words::short;
+use crate::report::words::{equals, short};
 use crate::scene::{Motion, Scene};
 use crate::slice::Time;
 use std::cell::RefCell;
@@ -356,10 +356,10 @@ impl<'a> Way<'a> {
         match w {
             Work::Within(_) => None,
             Work::Unbounded(t) => Some(format!(
-                "the work grows past every bound towards t = {}: there the contact reaches the \
+                "the work grows past every bound towards t {}: there the contact reaches the \
                  edge of its sticking cone with the spring wound, the force grows like one over \
                  the distance left, and so the work like its logarithm",
-                short(&self.clock(k, t))
+                equals(&self.clock(k, t))
             )),
             Work::Open => Some("not settled within the search's budget or the time".to_owned()),
         }
@@ -404,6 +404,9 @@ impl<'a> Way<'a> {
             Some(t) => t.clone(),
             None => phase.to.exact().enclosure(64).0,
         };
+        if length.is_zero() {
+            return Vec::new();
+        }
         let n = i64::from(self.wish.samples);
         (1..=n)
             .filter_map(|i| {
@@ -450,9 +453,9 @@ impl<'a> Way<'a> {
         });
         DrawnPhase {
             name: format!(
-                "velocity ({}, {}){}",
-                phase.velocity.x,
-                phase.velocity.y,
+                "root moved by ({}, {}){}",
+                short(&Num::of_rat(&phase.velocity.x)),
+                short(&Num::of_rat(&phase.velocity.y)),
                 if end.phase == k && end.kind != OutcomeKind::Completed {
                     format!(", {}", end.kind.name())
                 } else {
