@@ -10,6 +10,7 @@ use super::program::Program;
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Stage};
 use crate::lp::field::Double;
+use crate::lp::lift::ldexp;
 use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -91,9 +92,11 @@ fn weights_with(
         };
         c + noise * COST_NOISE * largest * share
     });
-    let cost: Vec<f64> = cost.collect();
+    // The solver takes sizes about 1 for granted; powers of two change no order of the ratios.
+    let (price, length) = (unit(p.cost.iter().copied()), unit(rows.iter().map(|r| r.2)));
+    let cost: Vec<f64> = cost.map(|c| c * price).collect();
     let a = CscMatrix::new(rows.len(), p.n, start, index, value);
-    let b: Vec<f64> = rows.iter().map(|r| r.2).collect();
+    let b: Vec<f64> = rows.iter().map(|r| r.2 * length).collect();
     let cones = [
         SupportedConeT::ZeroConeT(equations.len()),
         SupportedConeT::NonnegativeConeT(sides.len()),
@@ -137,6 +140,14 @@ fn weights_with(
         out[v] = out[v].min(ratio);
     }
     Ok(out)
+}
+
+/// The power of two that brings numbers to 1 in the geometric mean, those that are zero apart.
+fn unit(numbers: impl Iterator<Item = f64>) -> f64 {
+    let exponents = numbers
+        .filter(|v| *v != 0.0)
+        .map(|v| v.abs().log2().ceil() as i64);
+    ldexp(1.0, super::program::centre(exponents, 0))
 }
 
 /// Statuses with the m heaviest variables of `program` basic; `weights` are those of `direct`,

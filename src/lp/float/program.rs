@@ -120,14 +120,20 @@ impl Program {
         let (scale, scale_exponent) = mantissa(&p.cost_scale.abs());
         let place = |k: usize| if k < p.n { -exponents[k] } else { exponents[k] };
         let both = || (0..p.n + p.m).flat_map(|k| [(k, &p.lower[k]), (k, &p.upper[k])]);
-        let bound_shift = centre(both().filter_map(|(k, v)| {
-            let v = v.as_ref().filter(|v| !v.is_zero())?;
-            Some(v.bits() as i64 - bound_exponent + place(k))
-        }));
-        let cost_shift = centre((0..p.n).filter_map(|j| {
-            let c = Some(&p.cost[j]).filter(|c| !c.is_zero())?;
-            Some(c.bits() as i64 - scale_exponent + exponents[j])
-        }));
+        let bound_shift = centre(
+            both().filter_map(|(k, v)| {
+                let v = v.as_ref().filter(|v| !v.is_zero())?;
+                Some(v.bits() as i64 - bound_exponent + place(k))
+            }),
+            NEAR,
+        );
+        let cost_shift = centre(
+            (0..p.n).filter_map(|j| {
+                let c = Some(&p.cost[j]).filter(|c| !c.is_zero())?;
+                Some(c.bits() as i64 - scale_exponent + exponents[j])
+            }),
+            NEAR,
+        );
         let limit = |v: &Option<crate::number::Int>, k: usize, infinite: f64| match v {
             None => infinite,
             Some(v) => {
@@ -309,8 +315,8 @@ const HIGHEST: i64 = 20;
 const NEAR: i64 = 16;
 
 /// The shift that brings numbers of these binary exponents to about 1 in the geometric mean,
-/// where they are far from there.
-fn centre(exponents: impl Iterator<Item = i64>) -> i64 {
+/// where they are farther from there than `near`.
+pub(super) fn centre(exponents: impl Iterator<Item = i64>, near: i64) -> i64 {
     let (mut sum, mut count, mut high) = (0i128, 0i128, i64::MIN);
     for e in exponents {
         sum += i128::from(e);
@@ -321,7 +327,7 @@ fn centre(exponents: impl Iterator<Item = i64>) -> i64 {
         return 0;
     }
     let mean = sum.div_euclid(count) as i64;
-    if mean.abs() <= NEAR {
+    if mean.abs() <= near {
         return 0;
     }
     (-mean).min(HIGHEST - high)
