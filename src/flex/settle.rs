@@ -8,12 +8,6 @@
 //! that the program promised there. What a program then finds at the corrected end is what its
 //! vertex lacks to be optimal, not what the last step has left behind.
 //!
-//! **What has no price stays.** A vertex moves everything that can be moved, though most of it may
-//! gain nothing: bodies that nothing presses on rattle from one extreme to the other, and what that
-//! breaks must be restored again. But the objective's gradient is the sum of the rows' gradients
-//! times their prices; any motion that takes the rows with a price to their ends gains what the
-//! vertex does. So rows of the basis without a price may keep the distances they have (`quiet`).
-//!
 //! All in doubles: this proposes a configuration, and the exact test judges it.
 
 use super::model::{Scaffold, Sketch};
@@ -31,8 +25,6 @@ const SHRINKS: f64 = 0.5;
 /// Pivoting of the factors: least size relative to the row, and at all.
 const THRESHOLD: f64 = 0.1;
 const TINY: f64 = 1e-13;
-/// A price below this part of the largest is none.
-const PRICE: f64 = 1e-9;
 
 /// The rows that a program's optimum stands on.
 pub(crate) struct Tight {
@@ -45,8 +37,6 @@ pub(crate) struct Tight {
     reach: f64,
     /// Index of each tight row in its program.
     pub(crate) rows: Vec<usize>,
-    /// The objective's derivatives by the unknowns.
-    costs: Vec<f64>,
 }
 
 impl Tight {
@@ -75,16 +65,6 @@ impl Tight {
                 })
             }));
         }
-        let mut costs = vec![0.0; count];
-        for (body, arm, weight, turn) in scaffold.weighted(poses) {
-            let ([rx, ry], [x, y]) = (doubles(&arm), doubles(&weight));
-            let by = [x, y, double(&turn) + y * rx - x * ry];
-            for (unknown, v) in unknowns[body].iter().zip(by) {
-                if let Some(u) = unknown {
-                    costs[*u] += v;
-                }
-            }
-        }
         let from = poses.iter().map(|p| {
             let [x, y] = doubles(&p.place);
             [x, y, 2.0 * double(&p.tan_half).atan()]
@@ -95,7 +75,6 @@ impl Tight {
             from: from.collect(),
             reach: if reach > 0.0 { reach } else { 1.0 },
             rows,
-            costs,
         })
     }
 
@@ -132,34 +111,6 @@ impl Tight {
                 }
             }
         }
-    }
-
-    /// The direction that takes the rows with a price to their ends, while the others of the basis
-    /// keep their distances; and which rows have a price. None where that is the vertex itself.
-    pub(crate) fn quiet(&self) -> Option<(Vec<[f64; 3]>, Vec<bool>)> {
-        let (gaps, columns) = self.slopes(&self.from);
-        let lu = factorise(&Double, &columns, THRESHOLD, TINY).ok()?;
-        let mut work = Vec::new();
-        let mut prices = self.costs.clone();
-        for u in self.unknowns.iter().filter_map(|u| u[2]) {
-            prices[u] /= self.reach;
-        }
-        lu.solve_transposed(&mut prices, &mut work);
-        let most = prices.iter().fold(0.0f64, |m, p| m.max(p.abs()));
-        let priced: Vec<bool> = prices.iter().map(|p| p.abs() > PRICE * most).collect();
-        if most == 0.0 || priced.iter().all(|p| *p) {
-            return None;
-        }
-        // What is violated is restored, price or not.
-        let mut way: Vec<f64> = gaps
-            .iter()
-            .zip(&priced)
-            .map(|(gap, priced)| if *priced || *gap < 0.0 { -gap } else { 0.0 })
-            .collect();
-        lu.solve(&mut way, &mut work);
-        let mut out = vec![[0.0; 3]; self.from.len()];
-        self.add(&mut out, &way);
-        Some((out, priced))
     }
 
     /// By how much each tight row ends up farther open than its derivatives say.
@@ -218,7 +169,12 @@ impl Tight {
         let back = |(to, (from, m)): (&[f64; 3], (&[f64; 3], &[f64; 3]))| {
             let part = |k: usize| {
                 // What was not touched stays what it was, to the last bit.
-                let plain = from[k] + if k == 2 { 2.0 * (m[2] / 2.0).atan() } else { m[k] };
+                let plain = from[k]
+                    + if k == 2 {
+                        2.0 * (m[2] / 2.0).atan()
+                    } else {
+                        m[k]
+                    };
                 if to[k] == plain {
                     return m[k];
                 }
@@ -227,7 +183,11 @@ impl Tight {
             };
             [part(0), part(1), part(2)]
         };
-        let out: Vec<[f64; 3]> = best.iter().zip(self.from.iter().zip(moved)).map(back).collect();
+        let out: Vec<[f64; 3]> = best
+            .iter()
+            .zip(self.from.iter().zip(moved))
+            .map(back)
+            .collect();
         out.iter().flatten().all(|v| v.is_finite()).then_some(out)
     }
 }

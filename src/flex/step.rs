@@ -20,8 +20,8 @@ use super::limits::Limits;
 use super::model::{Row, Scaffold};
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
-use super::shape::{Placed, Pose, double};
 use super::settle::Tight;
+use super::shape::{Placed, Pose, double};
 use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
 use crate::lp::{self, Place, Places, Status};
@@ -215,6 +215,8 @@ struct Taken {
 const FINE: f64 = 0.25;
 /// Of what a program promises, the part of a direction followed must gain this much at least.
 const KEEPS: f64 = 0.1;
+/// A restoration that takes less than this part of the displacement is little.
+const LITTLE: f64 = 1e-3;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -337,9 +339,10 @@ impl<'a> Run<'a> {
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
                 let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                let next = solved.direction.as_ref().map(|direction| {
-                    self.search(&rows, &poses, direction, &solved)
-                });
+                let next = solved
+                    .direction
+                    .as_ref()
+                    .map(|direction| self.search(&rows, &poses, direction, &solved));
                 let (scale, next) = next.unzip();
                 Taken {
                     model_seconds,
@@ -415,12 +418,13 @@ impl<'a> Run<'a> {
             if stopped {
                 break;
             }
-            // A step that loses has restored constraints that the one before overreached, and the
-            // next one shows what there is to gain from here. Where both together lost, steps
-            // overreach and restore by turns, and that ends nowhere.
+            // A step that loses has restored constraints that the ones before overreached. If
+            // that was little, what the next would gain it would overreach again, over and over,
+            // and so it is if what was overreached and restored came to nothing.
             let both = &gain + &Rat::from_f64(last_gain);
+            let little = -&gain < &out.displacement.abs() * &Rat::from_f64(LITTLE);
             last_gain = double(&gain);
-            if gain < rules.gain && (-&gain < rules.gain || both < rules.gain) {
+            if gain < rules.gain && (-&gain < rules.gain || little || both < rules.gain) {
                 if limited {
                     limits.lift();
                     continue;
@@ -536,18 +540,6 @@ impl<'a> Run<'a> {
             let there = tight.as_ref()?.settle(&bent, &targets, close)?;
             Some(grain.moved(poses, forms, &there, 1.0))
         };
-        let quiet = tight.as_ref().and_then(Tight::quiet);
-        let quietly = |scale: f64| {
-            let (direction, priced) = quiet.as_ref()?;
-            let left = |(d, priced): (&f64, &bool)| {
-                let whole = !*priced && *d > 0.0;
-                d * if whole { 1.0 } else { 1.0 - scale }
-            };
-            let targets: Vec<f64> = now.iter().zip(priced).map(left).collect();
-            let bent = bend.follow(direction, scale);
-            let there = tight.as_ref()?.settle(&bent, &targets, close)?;
-            Some(grain.moved(poses, forms, &there, 1.0))
-        };
         let before = self.scaffold.displacement(poses);
         // A step that is to restore constraints may lose; one that is to gain must gain.
         let least = |scale: f64| (promise > 0.0).then(|| Rat::from_f64(KEEPS * promise * scale));
@@ -562,10 +554,8 @@ impl<'a> Run<'a> {
                 && !super::pairs::too_deep(&self.scaffold, &placed, double(allowed))
         };
         let at = |scale: f64| {
-            let there = quietly(scale).filter(|there| good(there, scale));
-            there
-                .or_else(|| settled(scale).filter(|there| good(there, scale)))
-                .or_else(|| Some(plain(scale)).filter(|there| good(there, scale)))
+            let there = settled(scale).filter(|there| good(there, scale));
+            there.or_else(|| Some(plain(scale)).filter(|there| good(there, scale)))
         };
         if let Some(whole) = at(1.0) {
             return (Rat::one(), whole);

@@ -39,7 +39,12 @@ fn counted(n: usize, what: &str) -> String {
 impl Display for FlexDocument {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let bodies = counted(self.bodies, "body").replace("bodys", "bodies");
-        writeln!(f, "{}: {bodies} flex by {}", self.structure, short(&self.displacement))?;
+        writeln!(
+            f,
+            "{}: {bodies} flex by {}",
+            self.structure,
+            short(&self.displacement)
+        )?;
         writeln!(f, "  outcome    {}", ending(self.outcome))?;
         writeln!(
             f,
@@ -117,21 +122,47 @@ impl Display for BraceDocument {
             ending(self.outcome)
         )?;
         let Some(beam) = &self.brace else {
-            return writeln!(f, "  no beam would hold anything: no two vertices in sight of each other moved so");
+            return writeln!(
+                f,
+                "  no beam would hold anything: no two vertices in sight of each other moved so"
+            );
         };
         let [(a, i, p), (b, j, q)] = &beam.ends;
-        writeln!(f, "  beam       vertex {i} of {a} ({}, {}) to vertex {j} of {b} ({}, {})", p[0], p[1], q[0], q[1])?;
-        writeln!(f, "  length     {} at first, {} after", short(&beam.before), short(&beam.after))?;
-        writeln!(f, "  searched   {} pairs of vertices, {} views", self.pairs[0], self.pairs[1])
+        writeln!(
+            f,
+            "  beam       vertex {i} of {a} ({}, {}) to vertex {j} of {b} ({}, {})",
+            p[0], p[1], q[0], q[1]
+        )?;
+        writeln!(
+            f,
+            "  length     {} at first, {} after",
+            short(&beam.before),
+            short(&beam.after)
+        )?;
+        writeln!(
+            f,
+            "  searched   {} pairs of vertices, {} views",
+            self.pairs[0], self.pairs[1]
+        )
     }
 }
 
 impl Display for LoosenDocument {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        writeln!(f, "{}: flex of at most {}", self.structure, short(&self.limit))?;
+        writeln!(
+            f,
+            "{}: flex of at most {}",
+            self.structure,
+            short(&self.limit)
+        )?;
         match (&self.inset, &self.flex) {
             (Some(inset), Some(flex)) => {
-                writeln!(f, "  inset      {}, which flexes by {}", short(inset), short(flex))?;
+                writeln!(
+                    f,
+                    "  inset      {}, which flexes by {}",
+                    short(inset),
+                    short(flex)
+                )?;
             }
             _ => writeln!(f, "  inset      none")?,
         }
@@ -152,7 +183,11 @@ impl Display for SeparateDocument {
             "comes-apart" => "comes apart",
             other => other,
         };
-        let how = if self.translations { " by translations" } else { "" };
+        let how = if self.translations {
+            " by translations"
+        } else {
+            ""
+        };
         writeln!(f, "{}: {verdict}{how}", self.structure)?;
         if let Some(held) = &self.held {
             writeln!(f, "  held       {held}: the file holds no body")?;

@@ -220,11 +220,15 @@ impl Tolerance {
     /// Why even the structure as it is drawn is not within the limit.
     fn why_none(&self) -> String {
         match self.probes.first() {
-            Some(Probe { flex: Some(flex), .. }) => format!(
+            Some(Probe {
+                flex: Some(flex), ..
+            }) => format!(
                 "the structure as drawn already flexes by {}, over the limit",
                 digits(double(flex), 6)
             ),
-            Some(Probe { reason: Some(why), .. }) => {
+            Some(Probe {
+                reason: Some(why), ..
+            }) => {
                 format!("of the structure as drawn, {why}")
             }
             _ => "nothing was tried".to_owned(),
