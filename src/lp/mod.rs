@@ -12,10 +12,10 @@
 mod basis;
 mod budget;
 pub mod cli;
-mod field;
+pub(crate) mod field;
 mod float;
 mod lift;
-mod lu;
+pub(crate) mod lu;
 pub mod model;
 mod outcome;
 mod problem;
