@@ -245,14 +245,28 @@ fn a_way_out_is_named_and_the_rest_is_told() {
         let w = Arc::unit(arc.quarter, &at);
         let d = direction(&ground, &start, &w, &whole.distance.square(), false);
         let Some(said) = arc.verdict else { continue };
+        // The gap of a flip goes to the side of which nothing is claimed.
+        let gap = &arc.to - &arc.from <= narrow;
         // Of `none` nothing is claimed; here it is so all the same.
         let open = d.run.outcome.kind == OutcomeKind::Bifurcated;
         let right = match said {
-            Verdict::None => d.verdict == Verdict::None,
+            Verdict::None => d.verdict == Verdict::None || gap,
             v => d.verdict >= v,
         };
         assert!(right || open, "{w:?} {:?}, said {said:?}", d.verdict);
     }
+}
+
+/// Without time nothing is claimed of any direction, and that is said.
+#[test]
+fn a_circle_without_time_is_open() {
+    let s = scene("tests/data/total-fig7d.toml");
+    let plan = simulate(&s, &Default::default()).unwrap();
+    let ground = Ground::new(&s, Some(std::time::Instant::now()));
+    let whole = total(&ground, &Start::after(&plan).unwrap(), &[]);
+    assert!(whole.class.is_none() && whole.escape.is_none());
+    assert!(whole.cover.iter().all(|a| a.verdict.is_none()));
+    assert!(whole.undecided_width >= 2.0 * std::f64::consts::PI);
 }
 
 /// A ratchet's pawl sinks in exactly when tan β > μ: here tan β = 1/6. At 1/6 itself it slides,

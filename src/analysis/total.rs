@@ -216,7 +216,7 @@ pub fn total(ground: &Ground<'_>, start: &Start, family: &[Vec2]) -> Total {
     let undecided_width = search
         .cover
         .iter()
-        .filter(|a| escape.is_none() && a.verdict < class)
+        .filter(|a| escape.is_none() && (a.verdict.is_none() || a.verdict < class))
         .map(Arc::width)
         .fold(0.0, |a, b| a + b);
     Total {
