@@ -12,15 +12,16 @@
 mod basis;
 mod budget;
 pub mod cli;
-mod field;
+pub(crate) mod field;
 mod float;
 mod lift;
-mod lu;
+pub(crate) mod lu;
 pub mod model;
 mod outcome;
 mod problem;
 pub mod read;
 mod reconstruct;
+mod repair;
 pub mod report;
 mod safe;
 mod simplex;

@@ -394,6 +394,17 @@ impl Algebraic {
         q: &Poly,
         locate: &mut dyn FnMut(u32) -> (Rat, Rat),
     ) -> Algebraic {
+        self.root_over_about(p, q, None, locate)
+    }
+    /// The same where an enclosure of the root may be known already; `locate` is only asked if that holds
+    /// another root too.
+    pub(crate) fn root_over_about(
+        &self,
+        p: &Poly,
+        q: &Poly,
+        about: Option<Interval>,
+        locate: &mut dyn FnMut(u32) -> (Rat, Rat),
+    ) -> Algebraic {
         // Π over the roots t of m of (p + t·q), up to a constant: q^n·m(−p/q).
         let minus_p = -p;
         let mut resultant = match self.root() {
@@ -405,11 +416,17 @@ impl Algebraic {
             resultant = homogenise(&self.minimal_polynomial(), &minus_p, q);
         }
         let mut bits = 64;
-        let (lo, hi) = locate(bits);
-        if lo == hi {
-            return Algebraic::from(lo);
-        }
-        pick(&resultant, outer(&lo, &hi), || {
+        let rough = match about {
+            Some(about) => about,
+            None => {
+                let (lo, hi) = locate(bits);
+                if lo == hi {
+                    return Algebraic::from(lo);
+                }
+                outer(&lo, &hi)
+            }
+        };
+        pick(&resultant, rough, || {
             let x = locate(bits);
             bits = bits.saturating_mul(2);
             x
