@@ -82,6 +82,11 @@ mod tests {
         p.name(0, 3, 78);
         p.name(1, 3, 77);
         assert!(p.alike(0, 1, 2) && !p.alike(0, 1, 3) && !p.alike(1, 1, 3));
+        // One name over two numbers is two points.
+        p.name(1, 8, 77);
+        p.name(1, 9, 78);
+        p.unite(1, 8, 9);
+        assert!(p.alike(1, 3, 9) && !p.alike(0, 1, 3));
         p.unite(0, 3, 4);
         assert!(p.alike(0, 4, 3) && !p.alike(0, 4, 1));
         p.unite(0, 4, 2);
