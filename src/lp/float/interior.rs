@@ -9,8 +9,8 @@ use super::engine::{Engine, rest};
 use super::program::Program;
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Stage};
+use crate::lp::digits::ldexp;
 use crate::lp::field::Double;
-use crate::lp::lift::ldexp;
 use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
