@@ -13,7 +13,7 @@ use super::safe::linear;
 use super::shape::{Placed, Pose};
 use super::step::{Corners, Run};
 use crate::certificate::lp::{Claim, verify};
-use crate::lp::{self, Model, Outcome, Status};
+use crate::lp::{self, Model, Outcome, Places, Status};
 use crate::number::Rat;
 
 /// Most programs of one step.
@@ -32,6 +32,8 @@ pub(crate) struct Solved {
     pub(crate) exact_pivots: u64,
     pub(crate) verified: Option<bool>,
     pub(crate) certificate: serde_json::Value,
+    /// The optimal basis, where the program has the given rows and no more.
+    pub(crate) basis: Option<Places>,
 }
 
 /// Solves the program of a configuration.
@@ -46,7 +48,11 @@ pub(crate) fn solve(
     let scaffold = &run.scaffold;
     if run.options.corners == Corners::Average || facing.is_empty() {
         let (model, outcome) = run.program(rows, poses);
-        return conclude(run, &model, &outcome, facing.len(), 1, None);
+        let basis = outcome.basis.clone();
+        return Solved {
+            basis,
+            ..conclude(run, &model, &outcome, facing.len(), 1, None)
+        };
     }
     let choices: Vec<[Row; 4]> = facing
         .iter()
@@ -221,6 +227,7 @@ fn conclude(
         exact_pivots: outcome.exact_pivots,
         verified,
         certificate: report["certificate"].take(),
+        basis: None,
     }
 }
 

@@ -75,6 +75,8 @@ pub(crate) struct Scaffold {
     /// Where every body stands at the start.
     pub(crate) start: Vec<Pose>,
     rotation_limit: Option<Rat>,
+    /// Limits of rotation by body, for the next program.
+    pub(crate) turn_limits: Option<Vec<Rat>>,
 }
 
 /// A term of the objective with its point, relative to the reference point, in the frame.
@@ -96,6 +98,36 @@ pub(crate) struct Row {
     pub(crate) theta1: Int,
     pub(crate) theta2: Int,
     pub(crate) d0: Int,
+}
+
+/// A constraint in doubles: a line's normal of length one and a point of the line in its body's
+/// frame, a point in the other's.
+#[derive(Clone, Debug)]
+pub(crate) struct Sketch {
+    pub(crate) one: usize,
+    pub(crate) two: usize,
+    unit: [f64; 2],
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
+impl Sketch {
+    /// The signed distance where bodies stand at (x, y, angle), and its derivatives by the first
+    /// and by the second one's.
+    pub(crate) fn measure(&self, at: &[[f64; 3]]) -> (f64, [f64; 3], [f64; 3]) {
+        let turned = |v: [f64; 2], angle: f64| {
+            let (s, c) = angle.sin_cos();
+            [c * v[0] - s * v[1], s * v[0] + c * v[1]]
+        };
+        let (a, b) = (at[self.one], at[self.two]);
+        let n = turned(self.unit, a[2]);
+        let (from, arm) = (turned(self.from, a[2]), turned(self.to, b[2]));
+        let way = [b[0] - a[0] + arm[0], b[1] - a[1] + arm[1]];
+        let gap = n[0] * (way[0] - from[0]) + n[1] * (way[1] - from[1]);
+        let first = [-n[0], -n[1], n[0] * way[1] - n[1] * way[0]];
+        let second = [n[0], n[1], arm[0] * n[1] - arm[1] * n[0]];
+        (gap, first, second)
+    }
 }
 
 fn line(normal: IntVec, base: IntVec, h: Int) -> Line {
@@ -182,6 +214,7 @@ impl Scaffold {
             column_count,
             start: structure.bodies.iter().map(Pose::of).collect(),
             rotation_limit: structure.step.rotation_limit.clone(),
+            turn_limits: None,
         };
         scaffold.terms = weights(structure, &scaffold);
         scaffold
@@ -311,6 +344,22 @@ impl Scaffold {
         (n, from, to)
     }
 
+    /// A pair in the frames of its bodies, in doubles.
+    pub(crate) fn sketch(&self, pair: &Pair) -> Sketch {
+        let (one, two) = (pair.line_body as usize, pair.point_body as usize);
+        let line = self.line(one, pair.plane);
+        Sketch {
+            one,
+            two,
+            unit: line.unit,
+            from: line.near,
+            to: match pair.point {
+                Point::Vertex(v) => self.shapes[two].local[v as usize],
+                Point::Marker(v) => self.views[v as usize].near,
+            },
+        }
+    }
+
     /// The weighted sum of displacements since the start, exactly. An angle counts as twice the
     /// tangent of half its change, which is the angle up to its third power.
     pub(crate) fn displacement(&self, poses: &[Pose]) -> Rat {
@@ -426,7 +475,9 @@ impl Scaffold {
             for (k, (column, cost)) in self.column(body).iter().zip(cost).enumerate() {
                 if column.is_some() {
                     let left = lines.get(&body).map(|x| *x - &poses[body].place.x);
-                    let range = match (&self.rotation_limit, k) {
+                    let own = self.turn_limits.as_ref().map(|all| &all[body]);
+                    let limit = self.rotation_limit.iter().chain(own).min();
+                    let range = match (limit, k) {
                         // Not past the line.
                         (_, 0) => match left {
                             Some(left) if left.sign() > 0 => Range::at_most(left),

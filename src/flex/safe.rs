@@ -2,7 +2,8 @@
 //!
 //! The linear program knows distances to the first order; along its direction the true ones fall
 //! short by a second-order term. So a safe step solves, looks by how much each constraint falls
-//! short at the end, and solves again with just that much held back (a second-order correction).
+//! short at the end, and puts the end right (`settle`), as far as the rows that the program stands on
+//! fall short. Where that does not do, it solves again with just that much held back.
 //! If a row holds back κ at the full step, then at a part s of it the first order leaves at least
 //! sκ ≥ s²κ, so the way there is safe as well, up to third order; what is left is for the proof
 //! (`motion`) to say. Where a constraint still falls short by a little, by κ′ where κ is held, the
@@ -91,17 +92,28 @@ impl Run<'_> {
             let trial = grain.moved(poses, &self.scaffold.forms, &direction, 1.0);
             let there = self.scaffold.place(&trial);
             let mut part = 1.0f64;
+            let mut promised = Vec::with_capacity(rows.len());
             for ((row, pair), held) in rows.iter().zip(&pairs).zip(&mut held) {
                 let (d, error) = self.scaffold.near(pair, &there);
-                let promised = linear(row, &direction);
-                let lack = (promised - d + error).max(0.0) + pad;
+                let said = linear(row, &direction);
+                let lack = (said - d + error).max(0.0) + pad;
                 if d - error < 0.0 {
-                    part = part.min((promised / lack).max(0.0) * (1.0 - 1e-3));
+                    part = part.min((said / lack).max(0.0) * (1.0 - 1e-3));
                 }
                 *held = held.max(lack * (1.0 + SPARE));
+                promised.push(said.max(pad));
             }
-            if part >= enough {
-                match self.attempt(poses, &pairs, &direction, part) {
+            let ends: [Option<(f64, Vec<Pose>)>; 2] = if part < 1.0 {
+                let whole = self.corrected(poses, &pairs, &direction, &solved, &promised);
+                let less = || grain.moved(poses, &self.scaffold.forms, &direction, part);
+                let less = (part >= enough).then(|| (part, less()));
+                [whole.map(|end| (1.0, end)), less]
+            } else {
+                [Some((1.0, trial)), None]
+            };
+            let known = self.scaffold.extra.len();
+            for (part, end) in ends.into_iter().flatten() {
+                match self.attempt(poses, &pairs, end) {
                     Tried::Proven(next, proof) => {
                         return SafeStep {
                             solved,
@@ -115,7 +127,6 @@ impl Run<'_> {
                     }
                     Tried::Short => {}
                     Tried::Met(contacts) => {
-                        let known = self.scaffold.extra.len();
                         for c in &contacts {
                             let (a, b) = (c.edge.0, c.vertex.0);
                             let two = (a.min(b), a.max(b));
@@ -123,19 +134,19 @@ impl Run<'_> {
                                 self.scaffold.extra.push(two);
                             }
                         }
-                        if self.scaffold.extra.len() > known {
-                            let kept: HashMap<Pair, f64> =
-                                pairs.iter().copied().zip(held.iter().copied()).collect();
-                            selection = self.selection(placed, moved);
-                            (pairs, rows) = self.rows(&selection, placed);
-                            held = pairs
-                                .iter()
-                                .zip(&rows)
-                                .map(|(p, r)| kept.get(p).copied().unwrap_or_else(|| keep(r)))
-                                .collect();
-                        }
                     }
                 }
+            }
+            if self.scaffold.extra.len() > known {
+                let kept: HashMap<Pair, f64> =
+                    pairs.iter().copied().zip(held.iter().copied()).collect();
+                selection = self.selection(placed, moved);
+                (pairs, rows) = self.rows(&selection, placed);
+                held = pairs
+                    .iter()
+                    .zip(&rows)
+                    .map(|(p, r)| kept.get(p).copied().unwrap_or_else(|| keep(r)))
+                    .collect();
             }
             last = Some(solved);
         }
@@ -147,7 +158,8 @@ impl Run<'_> {
         let mut part = 1.0;
         for _ in 0..HALVINGS {
             part /= 2.0;
-            if let Tried::Proven(next, proof) = self.attempt(poses, &pairs, &direction, part) {
+            let end = grain.moved(poses, &self.scaffold.forms, &direction, part);
+            if let Tried::Proven(next, proof) = self.attempt(poses, &pairs, end) {
                 return SafeStep {
                     solved,
                     rows,
@@ -170,17 +182,35 @@ impl Run<'_> {
         }
     }
 
-    /// Goes a part of a direction, and proves the way.
-    fn attempt(&self, poses: &[Pose], pairs: &[Pair], direction: &[[f64; 3]], part: f64) -> Tried {
-        let trial = self
-            .grain()
-            .moved(poses, &self.scaffold.forms, direction, part);
-        let there = self.scaffold.place(&trial);
+    /// The end of a step with the rows that its program stands on put where they were promised;
+    /// None where that cannot be done.
+    fn corrected(
+        &self,
+        poses: &[Pose],
+        pairs: &[Pair],
+        direction: &[[f64; 3]],
+        solved: &Solved,
+        promised: &[f64],
+    ) -> Option<Vec<Pose>> {
+        let tight = self.tight(pairs, poses, solved)?;
+        // Where the second order opens a gap the end must be open by as much, or the first order
+        // would have to close it on the way.
+        let bonus = tight.curvature(direction);
+        let each = tight.rows.iter().zip(&bonus);
+        let targets: Vec<f64> = each.map(|(&k, c)| promised[k] + c.max(0.0)).collect();
+        let grain = self.grain();
+        let there = tight.settle(direction, &targets, grain.distance() / 4.0)?;
+        Some(grain.moved(poses, &self.scaffold.forms, &there, 1.0))
+    }
+
+    /// Proves the way to an end.
+    fn attempt(&self, poses: &[Pose], pairs: &[Pair], end: Vec<Pose>) -> Tried {
+        let there = self.scaffold.place(&end);
         if self.exceeds(pairs, &there, &Rat::zero()) {
             return Tried::Short;
         }
-        match Motion::new(&self.scaffold, poses, &trial).prove() {
-            Ok(proof) => Tried::Proven(trial, proof),
+        match Motion::new(&self.scaffold, poses, &end).prove() {
+            Ok(proof) => Tried::Proven(end, proof),
             Err(contacts) => Tried::Met(contacts),
         }
     }

@@ -16,9 +16,11 @@
 use super::bend::Bend;
 use super::branch::{self, Solved};
 use super::grain::Grain;
+use super::limits::Limits;
 use super::model::{Row, Scaffold};
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::{Pair, Selection, select};
+use super::settle::Tight;
 use super::shape::{Placed, Pose, double};
 use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
@@ -213,6 +215,8 @@ struct Taken {
 const FINE: f64 = 0.25;
 /// Of what a program promises, the part of a direction followed must gain this much at least.
 const KEEPS: f64 = 0.1;
+/// A restoration that takes less than this part of the displacement is little.
+const LITTLE: f64 = 1e-3;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -305,6 +309,7 @@ impl<'a> Run<'a> {
         // Whether no contact came yet.
         let mut clear = true;
         let mut pairs = Vec::new();
+        let mut limits = Limits::default();
         for k in 0..rules.most {
             if self.late() {
                 out.ending = Ending::Undecided;
@@ -313,6 +318,7 @@ impl<'a> Run<'a> {
             let begin = Instant::now();
             let placed = self.scaffold.place(&poses);
             self.stations.follow(&self.scaffold, &poses, &placed);
+            self.scaffold.turn_limits = limits.bounds();
             let taken = if rules.path == Path::Safe {
                 self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
                 let safe = self.safe_step(&poses, &placed, k > 0);
@@ -333,9 +339,10 @@ impl<'a> Run<'a> {
                 let model_seconds = begin.elapsed().as_secs_f64();
                 self.tell(k, &out, last_gain, rows.len());
                 let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                let next = solved.direction.as_ref().map(|direction| {
-                    self.search(&pairs, &poses, direction, double(&solved.objective))
-                });
+                let next = solved
+                    .direction
+                    .as_ref()
+                    .map(|direction| self.search(&rows, &poses, direction, &solved));
                 let (scale, next) = next.unzip();
                 Taken {
                     model_seconds,
@@ -350,6 +357,11 @@ impl<'a> Run<'a> {
                 }
             };
             pairs.clone_from(&taken.pairs);
+            if limits.active() && taken.solved.status == Status::Infeasible {
+                // What is to be restored takes more than the limits allow.
+                limits.lift();
+                continue;
+            }
             let stopped = taken.next.is_none();
             if stopped {
                 out.ending = match taken.solved.status {
@@ -373,6 +385,14 @@ impl<'a> Run<'a> {
                 None
             };
             clear &= contact.is_none();
+            let limited = limits.active();
+            if rules.path == Path::Fast && !stopped {
+                let angle = |p: &Pose| 2.0 * double(&p.tan_half).atan();
+                let each = poses.iter().zip(&next);
+                let turned: Vec<f64> = each.map(|(a, b)| angle(b) - angle(a)).collect();
+                let promise = double(&taken.solved.objective);
+                limits.learn(&turned, double(&taken.scale), promise, double(&gain));
+            }
             if !stopped {
                 poses = next;
                 out.configurations.push(poses.clone());
@@ -398,10 +418,17 @@ impl<'a> Run<'a> {
             if stopped {
                 break;
             }
+            // A step that loses has restored constraints that the ones before overreached. If
+            // that was little, what the next would gain it would overreach again, over and over,
+            // and so it is if what was overreached and restored came to nothing.
+            let both = &gain + &Rat::from_f64(last_gain);
+            let little = -&gain < &out.displacement.abs() * &Rat::from_f64(LITTLE);
             last_gain = double(&gain);
-            // A step that loses has restored constraints that the last ones overreached; what the
-            // next would gain it would overreach again, over and over.
-            if gain < rules.gain {
+            if gain < rules.gain && (-&gain < rules.gain || little || both < rules.gain) {
+                if limited {
+                    limits.lift();
+                    continue;
+                }
                 out.ending = self.settled(taken.promise);
                 break;
             }
@@ -487,16 +514,32 @@ impl<'a> Run<'a> {
     /// configuration there.
     fn search(
         &self,
-        pairs: &[Pair],
+        rows: &[Row],
         poses: &[Pose],
         direction: &[[f64; 3]],
-        promise: f64,
+        solved: &Solved,
     ) -> (Rat, Vec<Pose>) {
         let allowed = &self.structure.step.violation;
         let grain = self.grain();
         let forms = &self.scaffold.forms;
-        let bend = self.bend(pairs, poses);
-        let at = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
+        let promise = double(&solved.objective);
+        let pairs: Vec<Pair> = rows.iter().map(|r| r.pair).collect();
+        let bend = self.bend(&pairs, poses);
+        let tight = self.tight(&pairs, poses, solved);
+        // What the tight rows are at, of which a part of a step leaves the rest.
+        let now: Vec<f64> = tight
+            .iter()
+            .flat_map(|t| &t.rows)
+            .map(|&k| length(&rows[k]))
+            .collect();
+        let plain = |scale: f64| grain.moved(poses, forms, &bend.follow(direction, scale), 1.0);
+        let close = self.fine / 64.0;
+        let settled = |scale: f64| {
+            let targets: Vec<f64> = now.iter().map(|d| d * (1.0 - scale)).collect();
+            let bent = bend.follow(direction, scale);
+            let there = tight.as_ref()?.settle(&bent, &targets, close)?;
+            Some(grain.moved(poses, forms, &there, 1.0))
+        };
         let before = self.scaffold.displacement(poses);
         // A step that is to restore constraints may lose; one that is to gain must gain.
         let least = |scale: f64| (promise > 0.0).then(|| Rat::from_f64(KEEPS * promise * scale));
@@ -507,25 +550,32 @@ impl<'a> Run<'a> {
                 return false;
             }
             let placed = self.scaffold.place(poses);
-            !self.exceeds(pairs, &placed, allowed)
+            !self.exceeds(&pairs, &placed, allowed)
                 && !super::pairs::too_deep(&self.scaffold, &placed, double(allowed))
         };
-        let whole = at(1.0);
-        if good(&whole, 1.0) {
+        let at = |scale: f64| {
+            let there = settled(scale).filter(|there| good(there, scale));
+            there.or_else(|| Some(plain(scale)).filter(|there| good(there, scale)))
+        };
+        if let Some(whole) = at(1.0) {
             return (Rat::one(), whole);
         }
         let (mut low, mut high) = (0.0f64, 1.0f64);
         let mut best = poses.to_vec();
         for _ in 0..HALVINGS {
             let middle = (low + high) / 2.0;
-            let there = at(middle);
-            if good(&there, middle) {
-                (low, best) = (middle, there);
-            } else {
-                high = middle;
+            match at(middle) {
+                Some(there) => (low, best) = (middle, there),
+                None => high = middle,
             }
         }
         (Rat::from_f64(low), best)
+    }
+
+    /// The rows that the optimum of a program stands on.
+    pub(crate) fn tight(&self, pairs: &[Pair], poses: &[Pose], solved: &Solved) -> Option<Tight> {
+        let basis = solved.basis.as_ref()?;
+        Tight::new(&self.scaffold, pairs, basis, poses, self.reach)
     }
 
     /// Whether a pair is violated by more than a distance, exactly.
@@ -573,6 +623,11 @@ impl<'a> Run<'a> {
         }
         out
     }
+}
+
+/// The distance of a row in doubles.
+fn length(row: &Row) -> f64 {
+    double(&violation(row)).sqrt() * f64::from(row.d0.sign())
 }
 
 /// d² of a row: d₀² over the squared length of its normal.

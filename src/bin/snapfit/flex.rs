@@ -16,6 +16,8 @@ use std::time::Duration;
 pub(crate) struct FlexArgs {
     #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    format: crate::flex_apps::FormatArg,
     /// How much is proven of every linear program
     #[arg(long, value_enum, default_value = "exact")]
     accuracy: Accuracy,
@@ -179,8 +181,7 @@ pub(crate) fn run_flex(args: &FlexArgs) -> Result<u8, Failure> {
     drop(spinner);
     let mut document = FlexDocument::new(&structure, &flexed, word);
     document.bound = bound.map(|b| document.bounded(&b));
-    let text = serde_json::to_string(&document).map_err(|e| e.to_string())?;
-    output::write(args.common.out.as_deref(), &(pretty(&text, 100) + "\n"))?;
+    crate::flex_apps::tell(&document, &args.format, &args.common)?;
     Ok(if FlexDocument::decided(flexed.ending) {
         DECIDED
     } else {

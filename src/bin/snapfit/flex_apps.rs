@@ -1,6 +1,6 @@
 //! The verbs of the applications of structures: `brace`, `loosen`, `separate`.
 
-use crate::args::{Common, seconds};
+use crate::args::{Common, Format, seconds};
 use crate::flex::{Accuracy, parse};
 use crate::{DECIDED, Failure, UNDECIDED, UNEXPECTED, output};
 use clap::{Args, ValueEnum};
@@ -24,6 +24,8 @@ use std::time::Duration;
 pub(crate) struct BraceArgs {
     #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    format: FormatArg,
     /// How much is proven of every linear program
     #[arg(long, value_enum, default_value = "exact")]
     accuracy: Accuracy,
@@ -44,6 +46,8 @@ pub(crate) struct BraceArgs {
 pub(crate) struct LoosenArgs {
     #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    format: FormatArg,
     /// Inset every body by this much, and print the structure
     #[arg(long, value_name = "DISTANCE", value_parser = exact)]
     by: Option<Rat>,
@@ -66,6 +70,8 @@ pub(crate) struct LoosenArgs {
 pub(crate) struct SeparateArgs {
     #[command(flatten)]
     common: Common,
+    #[command(flatten)]
+    format: FormatArg,
     /// Leave rotations out; directions are then checked for all time
     #[arg(long)]
     translations: bool,
@@ -113,6 +119,26 @@ enum ExpectArg {
 /// An exact number of the command line, in the notation of files.
 fn exact(text: &str) -> Result<Rat, String> {
     snapfit::number::literal::parse(text).map_err(|e| e.to_string())
+}
+
+/// The format of a verb of structures.
+#[derive(Args)]
+pub(crate) struct FormatArg {
+    /// How the result is told [default: summary on a terminal, json elsewhere]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+}
+
+/// Prints a document as JSON, or for people.
+pub(crate) fn tell<D: Serialize + std::fmt::Display>(
+    document: &D,
+    format: &FormatArg,
+    common: &Common,
+) -> Result<(), Failure> {
+    match crate::format_of(format.format, common) {
+        Format::Json => print(document, common),
+        Format::Summary => Ok(output::write(common.out.as_deref(), &document.to_string())?),
+    }
 }
 
 fn print(document: &impl Serialize, common: &Common) -> Result<(), Failure> {
@@ -185,7 +211,7 @@ pub(crate) fn run_brace(args: &BraceArgs) -> Result<u8, Failure> {
         });
         output::write(Some(path), &svg)?;
     }
-    print(&document, &args.common)?;
+    tell(&document, &args.format, &args.common)?;
     Ok(decided(flexed.ending))
 }
 
@@ -212,7 +238,7 @@ pub(crate) fn run_loosen(args: &LoosenArgs) -> Result<u8, Failure> {
     };
     let found = tolerance(&structure, &limit, &args.resolution, measure, &options)?;
     let document = LoosenDocument::new(&structure, &limit, measure, &found);
-    print(&document, &args.common)?;
+    tell(&document, &args.format, &args.common)?;
     Ok(DECIDED)
 }
 
@@ -269,7 +295,7 @@ pub(crate) fn run_separate(args: &SeparateArgs) -> Result<u8, Failure> {
         output::spare_input(&args.common.file, Some(path))?;
         output::write(Some(path), &parted(&structure, &cases, args.step.as_ref()))?;
     }
-    print(&document, &args.common)?;
+    tell(&document, &args.format, &args.common)?;
     let expected = match args.expect {
         None => {
             return Ok(if document.verdict == "undecided" {
@@ -290,7 +316,7 @@ pub(crate) fn run_separate(args: &SeparateArgs) -> Result<u8, Failure> {
     let _ = writeln!(
         std::io::stderr(),
         "snapfit: not as expected: it {}",
-        document.verdict
+        document.verdict.replace('-', " ")
     );
     Ok(UNEXPECTED)
 }

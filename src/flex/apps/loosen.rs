@@ -15,6 +15,7 @@ use crate::flex::{Ending, FlexOptions, Structure, flex};
 use crate::geometry::{Location, Meeting, Polygon, Vec2, defects, meet};
 use crate::number::{Int, Rat};
 use crate::report::Num;
+use crate::report::words::digits;
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use i_overlay::mesh::math::MathMode;
@@ -66,7 +67,7 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
     let [outer] = shape.as_slice() else {
         return Err("an inset has holes".to_owned());
     };
-    let exact = |p: &[f64; 2]| Vec2::new(Rat::from_f64(p[0]), Rat::from_f64(p[1]));
+    let exact = |p: &[f64; 2]| Vec2::new(decimal(p[0]), decimal(p[1]));
     let mut found: Vec<Vec2> = thinned(outer, ring.len()).iter().map(exact).collect();
     if found.len() != ring.len() {
         return Err(format!(
@@ -92,6 +93,16 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
     found.rotate_left(turn.unwrap_or(0));
     check(&original, &found, by, forward)?;
     Ok(found)
+}
+
+/// The nearest decimal of eight digits after the point, far within the slop: what an inset of 1/10
+/// makes of 0 is 1/10 again, not a fraction of the grid.
+fn decimal(v: f64) -> Rat {
+    const UNITS: i64 = 100_000_000;
+    Rat::new(
+        Rat::from_f64((v * UNITS as f64).round()).floor(),
+        Int::from(UNITS),
+    )
 }
 
 /// The ring without those vertices that lie, but for the grid, on the line of their neighbours:
@@ -203,6 +214,26 @@ pub struct Tolerance {
     pub beyond: Option<Rat>,
     /// All probes in order.
     pub probes: Vec<Probe>,
+}
+
+impl Tolerance {
+    /// Why even the structure as it is drawn is not within the limit.
+    fn why_none(&self) -> String {
+        match self.probes.first() {
+            Some(Probe {
+                flex: Some(flex), ..
+            }) => format!(
+                "the structure as drawn already flexes by {}, over the limit",
+                digits(double(flex), 6)
+            ),
+            Some(Probe {
+                reason: Some(why), ..
+            }) => {
+                format!("of the structure as drawn, {why}")
+            }
+            _ => "nothing was tried".to_owned(),
+        }
+    }
 }
 
 /// Finds how far all bodies may be inset so that the flex stays within a limit, to a resolution:
@@ -317,6 +348,9 @@ pub struct LoosenDocument {
     pub flex: Option<Num>,
     /// The least inset found to be past it.
     pub beyond: Option<Num>,
+    /// Why there is no inset within the limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
     /// How far an inset edge may be from where it was asked to be.
     pub slop: Num,
     /// All probes: inset, flex or the reason why there is none.
@@ -355,6 +389,7 @@ impl LoosenDocument {
             inset: found.within.as_ref().map(|w| Num::of_rat(&w.0)),
             flex: found.within.as_ref().map(|w| Num::of_rat(&w.1)),
             beyond: found.beyond.as_ref().map(Num::of_rat),
+            reason: found.within.is_none().then(|| found.why_none()),
             slop: Num::of_rat(&slop()),
             probes: found
                 .probes
@@ -396,6 +431,16 @@ mod tests {
         for (g, (x, y)) in got.iter().rev().zip(want) {
             assert!(near(g, x, y), "{got:?}");
         }
+    }
+
+    /// Decimals stay decimals, and an inset of none of the grid's numbers is within the slop.
+    #[test]
+    fn an_inset_by_a_tenth_is_a_tenth() {
+        let l = ring(&[(0, 0), (4, 0), (4, 1), (1, 1), (1, 3), (0, 3)]);
+        let got = inset(&l, &Rat::frac(1, 10)).expect("an inset");
+        let tenths = [(1, 1), (39, 1), (39, 9), (9, 9), (9, 29), (1, 29)];
+        let want = tenths.map(|(x, y)| Vec2::new(Rat::frac(x, 10), Rat::frac(y, 10)));
+        assert_eq!(got, want);
     }
 
     #[test]
