@@ -107,7 +107,7 @@ fn weights_with(
     ];
     let seconds = budget
         .left()
-        .map_or(f64::INFINITY, |t| t.as_secs_f64() / 2.0);
+        .map_or(f64::INFINITY, |t| t.as_secs_f64() / 1.5);
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .time_limit(seconds)
