@@ -3,4 +3,5 @@
 
 pub mod lp;
 mod lp_basis;
+mod lp_digits;
 pub mod lp_result;

@@ -7,8 +7,9 @@
 //! priced through a basis (duals and reduced costs). Both answer questions about signs.
 
 use super::budget::{Budget, Exhausted};
-use super::lift::{Kernel, Side, Solution};
+use super::lift::{Kernel, Side};
 use super::problem::Problem;
+use super::solution::Solution;
 use crate::number::Int;
 
 /// Where a variable is.

@@ -12,6 +12,7 @@
 mod basis;
 mod budget;
 pub mod cli;
+mod digits;
 pub(crate) mod field;
 mod float;
 mod lift;
@@ -25,6 +26,7 @@ mod repair;
 pub mod report;
 mod safe;
 mod simplex;
+mod solution;
 mod solve;
 
 pub use budget::Meter;

@@ -375,12 +375,12 @@ fn near(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vec<f64> {
     let double = |v: &Rat| v.nearest_f64().unwrap_or(f64::INFINITY);
     // The scale of the bounds may lie past the double range, and values with it: their quotient
     // is what counts, so both go by mantissa and exponent.
-    let (scale, exponent) = super::lift::mantissa(&p.bound_scale);
+    let (scale, exponent) = super::digits::mantissa(&p.bound_scale);
     (0..p.n)
         .map(|j| {
             let v = if frame.basis.status[j] == Resting::Basic {
                 let (v, e) = values.scaled(&values.component(frame, j));
-                super::lift::ldexp(v / scale, e - exponent)
+                super::digits::ldexp(v / scale, e - exponent)
             } else {
                 double(&Rat::new(frame.resting_value(j), p.bound_scale.clone()))
             };

@@ -148,3 +148,42 @@ pub(crate) fn prices(model: &Model, near: &[f64]) -> Option<Vec<f64>> {
     }
     Some(y.iter().map(|v| turn * v).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::prices;
+    use crate::lp::{Model, Range};
+    use crate::number::Rat;
+
+    /// Maximise 2x + 3y under x + y ≤ 4, 2x + y ≥ 1 and x, y ≥ 0: prices of nought prove nothing,
+    /// those of the first row from 3 up do; the second row's cannot.
+    #[test]
+    fn wrong_prices_come_right() {
+        let mut model = Model::new("two");
+        model.maximise = true;
+        let nought = || Range::at_least(Rat::zero());
+        let x = model.add_column("x", Rat::from(2), nought());
+        let y = model.add_column("y", Rat::from(3), nought());
+        let r = model.add_row("r", Range::at_most(Rat::from(4)));
+        let s = model.add_row("s", Range::at_least(Rat::one()));
+        for (i, j, a) in [(r, x, 1), (r, y, 1), (s, x, 2), (s, y, 1)] {
+            model.set(i, j, Rat::from(a));
+        }
+        for near in [&[][..], &[1.0, -2.0], &[2.999_999, 5.0]] {
+            let found = prices(&model, near).expect("prices that prove something");
+            assert!(found[1] <= 0.0, "{near:?} {found:?}");
+            assert!(found[0] + 2.0 * found[1] >= 2.0, "{near:?} {found:?}");
+            assert!(found[0] + found[1] >= 3.0, "{near:?} {found:?}");
+        }
+    }
+
+    /// Where a column grows for ever nothing can be proven.
+    #[test]
+    fn unbounded_programs_stay_unproven() {
+        let mut model = Model::new("one");
+        let x = model.add_column("x", Rat::from(-1), Range::at_least(Rat::zero()));
+        let r = model.add_row("r", Range::at_least(Rat::one()));
+        model.set(r, x, Rat::one());
+        assert_eq!(prices(&model, &[]), None);
+    }
+}

@@ -9,8 +9,8 @@ use super::engine::{Engine, rest};
 use super::program::Program;
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Stage};
+use crate::lp::digits::ldexp;
 use crate::lp::field::Double;
-use crate::lp::lift::ldexp;
 use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -45,12 +45,18 @@ fn weights_with(
     let p = direct;
     let total = p.n + p.m;
     let mut random = Engine::slack(p);
+    // The solver takes sizes about 1 for granted, as the noise does; powers of two change no order
+    // of the ratios.
+    let ends = p.lower.iter().chain(&p.upper).copied();
+    let length = unit(ends.filter(|b| b.is_finite()));
+    let price = unit(p.cost.iter().copied());
     // One constraint row a finite bound; equations first. (variable, sign, right-hand side)
     let mut equations = Vec::new();
     let mut sides = Vec::new();
     for v in 0..total {
         let (l, u) = (p.lower[v], p.upper[v]);
-        let mut slack = |b: f64| noise * BOUND_NOISE * random.next_random() * (1.0 + b.abs());
+        let mut slack =
+            |b: f64| noise * BOUND_NOISE * random.next_random() * (1.0 / length + b.abs());
         if l == u {
             equations.push((v, 1.0, u));
             continue;
@@ -92,8 +98,6 @@ fn weights_with(
         };
         c + noise * COST_NOISE * largest * share
     });
-    // The solver takes sizes about 1 for granted; powers of two change no order of the ratios.
-    let (price, length) = (unit(p.cost.iter().copied()), unit(rows.iter().map(|r| r.2)));
     let cost: Vec<f64> = cost.map(|c| c * price).collect();
     let a = CscMatrix::new(rows.len(), p.n, start, index, value);
     let b: Vec<f64> = rows.iter().map(|r| r.2 * length).collect();
@@ -103,7 +107,7 @@ fn weights_with(
     ];
     let seconds = budget
         .left()
-        .map_or(f64::INFINITY, |t| t.as_secs_f64() / 2.0);
+        .map_or(f64::INFINITY, |t| t.as_secs_f64() / 1.5);
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .time_limit(seconds)

@@ -6,7 +6,7 @@
 //! the smaller side, and a basis of the one is the complement of a basis of the other.
 
 use crate::lp::basis::{Basis, Status};
-use crate::lp::lift::{ldexp, mantissa};
+use crate::lp::digits::{ldexp, mantissa};
 use crate::lp::problem::Problem;
 
 /// Compressed lines of doubles.

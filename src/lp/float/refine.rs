@@ -11,7 +11,7 @@ use super::engine::{Ending, Engine};
 use super::program::Program;
 use crate::lp::basis::{Basis, ColumnVector, Frame, RowVector, Status};
 use crate::lp::budget::Budget;
-use crate::lp::lift::{ldexp, mantissa};
+use crate::lp::digits::{ldexp, mantissa};
 use crate::lp::problem::Problem;
 
 /// Rounds in one solve; what is still wrong then is left to exact pivots.
