@@ -429,7 +429,10 @@ impl<'a> Run<'a> {
                     limits.lift();
                     continue;
                 }
-                out.ending = self.settled(taken.promise);
+                // A direction that cannot be followed at all shows nothing.
+                let stuck = out.steps.last().filter(|s| s.scale.is_zero());
+                let promise = stuck.map_or(taken.promise, |s| double(&s.objective));
+                out.ending = self.settled(promise);
                 break;
             }
         }
@@ -441,7 +444,7 @@ impl<'a> Run<'a> {
         out
     }
 
-    /// How a run ends that gains no more: converged, unless its program promised a safe step
+    /// How a run ends that gains no more: converged, unless its program promised a step
     /// much more than what could be proven.
     fn settled(&self, promise: f64) -> Ending {
         if promise > 10.0 * double(&self.structure.step.gain) {
