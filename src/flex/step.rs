@@ -502,10 +502,14 @@ impl<'a> Run<'a> {
         self.stations.row(&self.scaffold, pair, placed, rounding)
     }
 
+    /// Whether bodies are joined; the robots of a flock are not, and go straight.
+    fn joined(&self) -> bool {
+        self.scaffold.nearest.is_none() && self.scaffold.views.is_empty()
+    }
+
     /// How directions are followed from a configuration.
     fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
-        // Robots of a flock are not joined: they go straight.
-        let joined = self.scaffold.nearest.is_none() && self.scaffold.views.is_empty();
+        let joined = self.joined();
         let links = pairs
             .iter()
             .filter(|_| joined)
@@ -577,7 +581,7 @@ impl<'a> Run<'a> {
 
     /// The rows that the optimum of a program stands on.
     pub(crate) fn tight(&self, pairs: &[Pair], poses: &[Pose], solved: &Solved) -> Option<Tight> {
-        let basis = solved.basis.as_ref()?;
+        let basis = solved.basis.as_ref().filter(|_| self.joined())?;
         Tight::new(&self.scaffold, pairs, basis, poses, self.reach)
     }
 
