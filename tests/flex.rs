@@ -485,6 +485,18 @@ fn branching_finds_the_best_side() {
     assert!(average.steps[0].objective >= r(2, 10) && average.steps[0].objective < r(21, 100));
 }
 
+/// A chain long enough to curl past where it is farthest: its best lies within the joints' ranges,
+/// where no vertex is, and is reached all the same.
+#[test]
+fn a_chain_curls_to_its_best_in_few_steps() {
+    let s = generate("chain", 223, 1).expect("a structure");
+    let flexed = flex(&s, &FlexOptions::default());
+    assert_eq!(flexed.ending, Ending::Converged);
+    assert!(flexed.steps.len() <= 30, "{}", flexed.steps.len());
+    assert!(flexed.displacement > r(157_203, 100));
+    assert!(flexed.violation.square <= s.step.violation.square());
+}
+
 /// Digits stay bounded however many steps are taken.
 #[test]
 fn digits_do_not_pile_up() {

@@ -446,6 +446,44 @@ fn the_verbs_answer() {
     assert!(said.contains("body b0_0"), "{said}");
 }
 
+/// For people: a few lines that say how it ended, in words; piped, JSON as ever.
+#[test]
+fn results_are_told_to_people_too() {
+    let people = |args: &[&str]| {
+        let (code, text, said) = snapfit(&[args, &["--format", "summary"][..]].concat());
+        assert_eq!(code, 0, "{said}");
+        assert!(!text.contains('{'), "{text}");
+        text
+    };
+    let text = people(&["flex", "examples/flex/fig1.toml"]);
+    assert!(text.contains("8 bodies flex by"), "{text}");
+    assert!(text.contains("outcome    converged"), "{text}");
+    assert!(text.contains("certificate verified"), "{text}");
+    let safe = people(&["flex", "examples/flex/fig1.toml", "--path", "safe"]);
+    assert!(safe.contains("violation  none"), "{safe}");
+    let text = people(&["separate", "examples/flex/fig8.toml", "--translations"]);
+    assert!(text.contains(": comes apart by translations"), "{text}");
+    let text = people(&["brace", "examples/flex/frame.toml"]);
+    assert!(text.contains("  beam       vertex"), "{text}");
+    let (_, piped, _) = snapfit(&["flex", "examples/flex/fig1.toml"]);
+    let json: serde_json::Value = serde_json::from_str(&piped).unwrap();
+    assert_eq!(json["outcome"], "converged");
+}
+
+/// A limit that the structure is past as it is drawn is said, in both formats.
+#[test]
+fn a_limit_already_exceeded_is_said() {
+    let ask = ["loosen", "examples/flex/fig1.toml", "--limit", "1/1000000"];
+    let (code, text, _) = snapfit(&ask);
+    assert_eq!(code, 0);
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert!(json["inset"].is_null());
+    let why = json["reason"].as_str().unwrap();
+    assert!(why.contains("as drawn already flexes by"), "{why}");
+    let (_, text, _) = snapfit(&[&ask[..], &["--format", "summary"]].concat());
+    assert!(text.contains("over the limit"), "{text}");
+}
+
 /// As many pictures as were asked for, numbered, all of one frame.
 #[test]
 fn frames_are_files() {

@@ -23,6 +23,8 @@ use std::collections::HashMap;
 const ENOUGH: [f64; 6] = [0.95, 0.8, 0.7, 0.6, 0.5, 0.4];
 /// What is held back beyond what was found lacking: another direction lacks a little more.
 const SPARE: f64 = 1.0 / 32.0;
+/// The least part of a step that is taken where its end has been put right.
+const HALF: f64 = 0.5;
 /// Halvings of a step that corrections do not save.
 const HALVINGS: usize = 10;
 
@@ -38,6 +40,17 @@ pub(crate) struct SafeStep {
     pub(crate) programs: usize,
     /// What the first of them promised, before more was held back than rounding takes.
     pub(crate) promise: f64,
+}
+
+/// A direction from a configuration, and its program's rows as distances: now, and promised at
+/// its end.
+struct Vertex<'a> {
+    poses: &'a [Pose],
+    pairs: &'a [Pair],
+    direction: &'a [[f64; 3]],
+    solved: &'a Solved,
+    now: &'a [f64],
+    promised: &'a [f64],
 }
 
 /// What became of a part of a direction.
@@ -92,6 +105,7 @@ impl Run<'_> {
             let trial = grain.moved(poses, &self.scaffold.forms, &direction, 1.0);
             let there = self.scaffold.place(&trial);
             let mut part = 1.0f64;
+            let now: Vec<f64> = rows.iter().map(|row| linear(row, &start)).collect();
             let mut promised = Vec::with_capacity(rows.len());
             for ((row, pair), held) in rows.iter().zip(&pairs).zip(&mut held) {
                 let (d, error) = self.scaffold.near(pair, &there);
@@ -103,16 +117,28 @@ impl Run<'_> {
                 *held = held.max(lack * (1.0 + SPARE));
                 promised.push(said.max(pad));
             }
-            let ends: [Option<(f64, Vec<Pose>)>; 2] = if part < 1.0 {
-                let whole = self.corrected(poses, &pairs, &direction, &solved, &promised);
-                let less = || grain.moved(poses, &self.scaffold.forms, &direction, part);
-                let less = (part >= enough).then(|| (part, less()));
-                [whole.map(|end| (1.0, end)), less]
+            let mut ends = Vec::new();
+            if part < 1.0 {
+                let vertex = Vertex {
+                    poses,
+                    pairs: &pairs,
+                    direction: &direction,
+                    solved: &solved,
+                    now: &now,
+                    promised: &promised,
+                };
+                if let Some((safe, end)) = self.corrected(&vertex) {
+                    ends.push((safe, end));
+                }
+                if part >= enough {
+                    let less = grain.moved(poses, &self.scaffold.forms, &direction, part);
+                    ends.push((part, less));
+                }
             } else {
-                [Some((1.0, trial)), None]
-            };
+                ends.push((1.0, trial));
+            }
             let known = self.scaffold.extra.len();
-            for (part, end) in ends.into_iter().flatten() {
+            for (part, end) in ends {
                 match self.attempt(poses, &pairs, end) {
                     Tried::Proven(next, proof) => {
                         return SafeStep {
@@ -155,20 +181,38 @@ impl Run<'_> {
             None => branch::solve(self, &rows, &selection, placed, poses),
         };
         let direction = solved.direction.clone().unwrap_or_default();
+        let now: Vec<f64> = rows.iter().map(|row| linear(row, &start)).collect();
+        let said = |row: &Row| linear(row, &direction).max(pad);
+        let promised: Vec<f64> = if direction.len() == start.len() {
+            rows.iter().map(said).collect()
+        } else {
+            now.clone()
+        };
         let mut part = 1.0;
         for _ in 0..HALVINGS {
             part /= 2.0;
-            let end = grain.moved(poses, &self.scaffold.forms, &direction, part);
-            if let Tried::Proven(next, proof) = self.attempt(poses, &pairs, end) {
-                return SafeStep {
-                    solved,
-                    rows,
-                    scale: Rat::from_f64(part),
-                    next: Some(next),
-                    proof: Some(proof),
-                    programs,
-                    promise,
-                };
+            let vertex = Vertex {
+                poses,
+                pairs: &pairs,
+                direction: &direction,
+                solved: &solved,
+                now: &now,
+                promised: &promised,
+            };
+            let plain = grain.moved(poses, &self.scaffold.forms, &direction, part);
+            let right = self.put_right(&vertex, part);
+            for end in right.into_iter().chain([plain]) {
+                if let Tried::Proven(next, proof) = self.attempt(poses, &pairs, end) {
+                    return SafeStep {
+                        solved,
+                        rows,
+                        scale: Rat::from_f64(part),
+                        next: Some(next),
+                        proof: Some(proof),
+                        programs,
+                        promise,
+                    };
+                }
             }
         }
         SafeStep {
@@ -182,25 +226,49 @@ impl Run<'_> {
         }
     }
 
-    /// The end of a step with the rows that its program stands on put where they were promised;
-    /// None where that cannot be done.
-    fn corrected(
-        &self,
-        poses: &[Pose],
-        pairs: &[Pair],
-        direction: &[[f64; 3]],
-        solved: &Solved,
-        promised: &[f64],
-    ) -> Option<Vec<Pose>> {
-        let tight = self.tight(pairs, poses, solved)?;
+    /// The end of a part of a step, with the rows that its program stands on put where they were
+    /// promised; None where that cannot be done.
+    fn put_right(&self, vertex: &Vertex<'_>, part: f64) -> Option<Vec<Pose>> {
+        let tight = self.tight(vertex.pairs, vertex.poses, vertex.solved)?;
+        let less: Vec<[f64; 3]> = vertex
+            .direction
+            .iter()
+            .map(|d| d.map(|v| v * part))
+            .collect();
         // Where the second order opens a gap the end must be open by as much, or the first order
         // would have to close it on the way.
-        let bonus = tight.curvature(direction);
-        let each = tight.rows.iter().zip(&bonus);
-        let targets: Vec<f64> = each.map(|(&k, c)| promised[k] + c.max(0.0)).collect();
+        let bonus = tight.curvature(&less);
+        let target = |(&k, c): (&usize, &f64)| {
+            vertex.now[k] * (1.0 - part) + vertex.promised[k] * part + c.max(0.0)
+        };
+        let targets: Vec<f64> = tight.rows.iter().zip(&bonus).map(target).collect();
         let grain = self.grain();
-        let there = tight.settle(direction, &targets, grain.distance() / 4.0)?;
-        Some(grain.moved(poses, &self.scaffold.forms, &there, 1.0))
+        let there = tight.settle(&less, &targets, grain.distance() / 4.0)?;
+        Some(grain.moved(vertex.poses, &self.scaffold.forms, &there, 1.0))
+    }
+
+    /// The end of a step, put right, and the part of the step that it is: where rows that the
+    /// program does not stand on are broken by less than half of the step, what these leave. None
+    /// where that cannot be done.
+    fn corrected(&self, vertex: &Vertex<'_>) -> Option<(f64, Vec<Pose>)> {
+        let whole = self.put_right(vertex, 1.0)?;
+        let there = self.scaffold.place(&whole);
+        let mut part = 1.0f64;
+        let rows = vertex.pairs.iter().zip(vertex.now).zip(vertex.promised);
+        for ((pair, now), promised) in rows {
+            let (d, error) = self.scaffold.near(pair, &there);
+            let lack = promised - d + error;
+            if d - error < 0.0 && lack > 0.0 {
+                // Where (1 − s)·now + s·promised − s²·lack is zero.
+                let slope = promised - now;
+                let root = (slope * slope + 4.0 * lack * now.max(0.0)).sqrt();
+                part = part.min((slope + root) / (2.0 * lack) * (1.0 - SPARE));
+            }
+        }
+        if part == 1.0 {
+            return Some((1.0, whole));
+        }
+        (part >= HALF).then(|| self.put_right(vertex, part).map(|end| (part, end)))?
     }
 
     /// Proves the way to an end.

@@ -429,7 +429,10 @@ impl<'a> Run<'a> {
                     limits.lift();
                     continue;
                 }
-                out.ending = self.settled(taken.promise);
+                // A direction that cannot be followed at all shows nothing.
+                let stuck = out.steps.last().filter(|s| s.scale.is_zero());
+                let promise = stuck.map_or(taken.promise, |s| double(&s.objective));
+                out.ending = self.settled(promise);
                 break;
             }
         }
@@ -441,7 +444,7 @@ impl<'a> Run<'a> {
         out
     }
 
-    /// How a run ends that gains no more: converged, unless its program promised a safe step
+    /// How a run ends that gains no more: converged, unless its program promised a step
     /// much more than what could be proven.
     fn settled(&self, promise: f64) -> Ending {
         if promise > 10.0 * double(&self.structure.step.gain) {
@@ -499,10 +502,14 @@ impl<'a> Run<'a> {
         self.stations.row(&self.scaffold, pair, placed, rounding)
     }
 
+    /// Whether bodies are joined; the robots of a flock are not, and go straight.
+    fn joined(&self) -> bool {
+        self.scaffold.nearest.is_none() && self.scaffold.views.is_empty()
+    }
+
     /// How directions are followed from a configuration.
     fn bend(&self, pairs: &[Pair], poses: &[Pose]) -> Bend {
-        // Robots of a flock are not joined: they go straight.
-        let joined = self.scaffold.nearest.is_none() && self.scaffold.views.is_empty();
+        let joined = self.joined();
         let links = pairs
             .iter()
             .filter(|_| joined)
@@ -574,7 +581,7 @@ impl<'a> Run<'a> {
 
     /// The rows that the optimum of a program stands on.
     pub(crate) fn tight(&self, pairs: &[Pair], poses: &[Pose], solved: &Solved) -> Option<Tight> {
-        let basis = solved.basis.as_ref()?;
+        let basis = solved.basis.as_ref().filter(|_| self.joined())?;
         Tight::new(&self.scaffold, pairs, basis, poses, self.reach)
     }
 
