@@ -303,7 +303,7 @@ mod tests {
         let p = Int::from(Prime { c: 1 }.p());
         let one = Int::one();
         let a = Poly::new(vec![-&one, Int::zero(), one.clone()]);
-        let b = Poly::new(vec![&p - &one, p.clone(), one.clone()]);
+        let b = Poly::new(vec![&p * &p - &one, p.clone(), one.clone()]);
         assert_eq!(gcd(&a, &b), Some(Poly::constant(Int::one())));
         let c = Poly::from_i64(&[5, 7]);
         assert_eq!(gcd(&(&a * &c), &(&b * &c)), Some(c.clone()));
