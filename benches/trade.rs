@@ -1,7 +1,8 @@
 //! What certainty costs: filtered against f64, in one run, reading and printing apart;
 //! the whole scene at gap 2⁻¹⁰⁰⁰ against 2⁻¹⁰; from what size on the sweep is the faster method.
 //! `cargo bench --bench trade`; words after `--` choose parts (arithmetics, gaps, crossover), and
-//! `busy [f64] [sweep] [forced]` runs one setting for a profiler.
+//! `busy [f64] [sweep] [forced]` runs one setting for a profiler; `busy gap pass 1000` one family's
+//! scene at gap 2⁻¹⁰⁰⁰; `rounds 100` fixes how often, for an instruction count.
 //!
 //! Each figure is the least CPU time of many runs; ratios are what counts.
 #![allow(clippy::unwrap_used)]
@@ -212,8 +213,7 @@ fn crossover() {
 }
 
 /// For a profiler: the generic scenes again and again, by one arithmetic and method.
-fn busy(arithmetic: Arithmetic, method: Method, forced_ones: bool) {
-    let scenes = if forced_ones { forced() } else { generic(60) };
+fn busy(arithmetic: Arithmetic, method: Method, scenes: &[Scene], most: usize) {
     let options = Options {
         arithmetic,
         method,
@@ -221,8 +221,8 @@ fn busy(arithmetic: Arithmetic, method: Method, forced_ones: bool) {
     };
     let from = cpu();
     let mut rounds = 0;
-    while cpu() - from < 4.0 {
-        for s in &scenes {
+    while rounds < most && (most < usize::MAX || cpu() - from < 4.0) {
+        for s in scenes {
             drop(simulate(s, &options));
         }
         rounds += 1;
@@ -248,7 +248,22 @@ fn main() {
         } else {
             Method::Naive
         };
-        return busy(arithmetic, method, has("forced"));
+        let number = |word: &str| {
+            let at = chosen.iter().position(|c| c == word)?;
+            chosen.get(at + 1)?.parse::<usize>().ok()
+        };
+        let gap = FAMILIES.iter().find_map(|f| Some((f, number(f.name)?)));
+        let scenes = match gap {
+            Some((family, k)) => vec![family.scene(k as u32)],
+            None if has("forced") => forced(),
+            None => generic(60),
+        };
+        return busy(
+            arithmetic,
+            method,
+            &scenes,
+            number("rounds").unwrap_or(usize::MAX),
+        );
     }
     if wanted("arithmetics") {
         arithmetics();

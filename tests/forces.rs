@@ -374,7 +374,8 @@ fn work_and_peaks_of_the_root_hold_against_sampling() {
                     assert!((&hi - &lo) * Rat::from(10).pow(5) <= hi, "{name}: narrow");
                 }
             }
-            if let Some(work) = &p.work {
+            let work = p.work.as_ref().expect("settled");
+            if ends(work).is_some() {
                 worked += usize::from(sum != 0.0);
                 let got = middle(work);
                 assert!(
@@ -385,6 +386,84 @@ fn work_and_peaks_of_the_root_hold_against_sampling() {
         }
     }
     assert!(worked >= 5, "{worked}");
+}
+
+/// The work of every way is enclosed, narrower where more digits are asked for, or it is said
+/// that it has no bound, and why: only where friction holds at last.
+#[test]
+fn work_is_settled_everywhere() {
+    let clips = [
+        "examples/rabbit-clip-lock.toml",
+        "examples/ratchet-sinks.toml",
+        "examples/bayer-hook-steep.toml",
+        "tests/data/rabbit-large.toml",
+        "tests/data/rabbit-firm.toml",
+    ];
+    let (mut unbounded, mut rubbed) = (0, 0);
+    for name in SCENES.into_iter().chain(MORE).chain(clips) {
+        let mut s = scene(name);
+        s.friction.get_or_insert(Rat::frac(1, 4));
+        s.pawls.iter_mut().for_each(|p| {
+            p.stiffness.get_or_insert(Rat::from(3));
+        });
+        let with = |digits| {
+            let wish = Wish {
+                digits,
+                root: true,
+                work: true,
+                ..Wish::default()
+            };
+            let doc = forces(&s, &wish, &Ask::default()).unwrap();
+            let root = doc.root.unwrap();
+            root.phases.into_iter().chain(root.way_back)
+        };
+        for (few, many) in with(6).zip(with(30)) {
+            let (a, b) = (few.work.expect("settled"), many.work.expect("settled"));
+            let stuck = few.outcome == "stuck";
+            match (ends(&a), ends(&b)) {
+                (Some([lo, hi]), Some([low, high])) => {
+                    assert!(few.work_note.is_none());
+                    assert!(lo <= low && low <= high && high <= hi, "{name}");
+                    let most = lo.abs().max(hi.abs()).max(Rat::one());
+                    assert!((&high - &low) * Rat::from(10).pow(27) <= most, "{name}");
+                    rubbed += usize::from(!lo.is_zero());
+                }
+                (None, None) => {
+                    assert!(stuck, "{name}");
+                    assert!(few.work_note.is_some());
+                    let peak = few.peak.unwrap();
+                    assert!(ends(&peak.resistance).is_none(), "{name}");
+                    unbounded += 1;
+                }
+                _ => panic!("{name}: {a:?} {b:?}"),
+            }
+        }
+    }
+    assert!(unbounded >= 2 && rubbed >= 10, "{unbounded} {rubbed}");
+}
+
+/// Where the sliding is just about to stick as it begins, at rest, force and work stay finite: the
+/// spring's pull and the balance's denominator vanish together. The handbook's asymptote.
+#[test]
+fn work_is_finite_from_the_boundary_on() {
+    // tan α = 3/2 and μ = 2/3: the first instant is on the cone's ray.
+    let s = bayer(&Rat::frac(3, 2), &Rat::frac(1, 2), &Rat::frac(2, 3));
+    let wish = Wish {
+        work: true,
+        root: true,
+        ..Wish::default()
+    };
+    let doc = forces(&s, &wish, &Ask::default()).unwrap();
+    let there = &doc.root.as_ref().unwrap().phases[0];
+    let n = 3000;
+    let dense = asked(&s, 6, n);
+    let history = &dense.root.as_ref().unwrap().phases[0].history;
+    let length = there.to.value.unwrap() - there.from.value.unwrap();
+    let sum: f64 =
+        history.iter().map(|h| middle(&h.resistance)).sum::<f64>() * length / f64::from(n);
+    let work = there.work.as_ref().expect("settled");
+    assert!(ends(work).is_some());
+    assert!((middle(work) - sum).abs() <= 0.01 * sum, "{sum} {work:?}");
 }
 
 /// Bayer's Example I: the torque balance of a rigid arm, W = P·(sin α + μ cos α)/(cos(α ∓ θ) ∓

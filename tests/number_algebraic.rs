@@ -602,6 +602,43 @@ proptest! {
     }
 
     #[test]
+    fn quotients_compare_as_their_own_roots(
+        p in small_poly(3, 9), q in small_poly(3, 9),
+        n in small_poly(2, 9), d in small_poly(2, 9), near in 0u64..300,
+    ) {
+        // The same quotient of two numbers, of which the second may differ from the first by 2^-near of it, first
+        // as it is, then by the roots of polynomials of its own.
+        let k = Int::one().shl(near);
+        for a in p.real_roots().iter().filter(|a| a.sign_of(&d) != 0) {
+            for b in q.real_roots().iter().filter(|b| b.sign_of(&d) != 0) {
+                let beside = n.scale(&(&k + Int::one()));
+                let make = || {
+                    let exactly = b.ratio(&n, &d);
+                    (a.ratio(&n, &d), exactly, b.ratio(&beside, &d.scale(&k)))
+                };
+                let fresh = make();
+                let settled = make();
+                for x in [&settled.0, &settled.1, &settled.2] {
+                    // Asking for the polynomial settles the quotient.
+                    let _ = x.defining_polynomial();
+                }
+                prop_assert_eq!(fresh.0.cmp(&fresh.1), settled.0.cmp(&settled.1));
+                let fresh = make();
+                prop_assert_eq!(fresh.0 == fresh.2, settled.0 == settled.2);
+                prop_assert_eq!(fresh.0.cmp(&fresh.2), settled.0.cmp(&settled.2));
+                prop_assert_eq!(fresh.2.cmp(&fresh.1), settled.2.cmp(&settled.1));
+                prop_assert_eq!(fresh.2.sign(), settled.2.sign());
+                // Between different ones a rational.
+                if fresh.1 != fresh.2 {
+                    let m = Algebraic::between(&fresh.1, &fresh.2);
+                    prop_assert_eq!(fresh.1.cmp_rat(&m), settled.1.cmp(&settled.2));
+                    prop_assert_eq!(settled.2.cmp_rat(&m), settled.2.cmp(&settled.1));
+                }
+            }
+        }
+    }
+
+    #[test]
     fn root_over_finds_the_root(m in small_poly(3, 9), p in small_poly(2, 9), q in small_poly(2, 9)) {
         for t in m.real_roots() {
             // Roots of p + t·q located by rational neighbours of t: sign changes of the polynomial at lo and hi of t.

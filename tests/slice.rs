@@ -23,6 +23,38 @@ use snapfit::slice::{Configuration, Free, Owner, Shape, Side, Slice, Whereabouts
 use world::rng::Rng;
 use world::scenes::{Recipe, random_scene};
 
+/// The doubles that a snap goes by: where they say an arc is, there it is, also in phases that run backwards.
+#[test]
+fn positions_in_doubles_hold_the_exact_ones() {
+    let (mut seen, mut narrow) = (0, 0);
+    for seed in (0..count(20_000) as u64).map(|k| 8_500_000 + world::first_seed() + k) {
+        let scene = random_scene(&Recipe::draw(seed));
+        slices(&scene, &Options::default(), &mut |s: Seen| {
+            let (slice, mut r) = (&s.slice, Rng::new(seed));
+            let ids = 0..slice.arcs().len() as u32;
+            for id in ids.filter(|&id| matches!(slice.arc(id).shape, Shape::Graph { .. })) {
+                let arc = slice.arc(id);
+                let t = &slice.frame.duration * &Rat::frac(r.range(1, 99_999), 100_019);
+                if arc.start().t.cmp_rat(&t).is_gt() || arc.end().t.cmp_rat(&t).is_lt() {
+                    continue;
+                }
+                let about = slice.position_about(id, t.interval());
+                let x = slice.height_at(arc, &t).unwrap();
+                let [lo, hi] = [about.lo, about.hi].map(Rat::from_f64);
+                assert!(
+                    x.cmp_rat(&lo).is_ge() && x.cmp_rat(&hi).is_le(),
+                    "seed {seed}, arc {id} at {t}: {about:?}"
+                );
+                seen += 1;
+                narrow += usize::from(about.width() < 1e-9);
+            }
+        })
+        .unwrap();
+    }
+    eprintln!("{narrow} of {seen} are narrow");
+    assert!(seen > 100 && 10 * narrow > 9 * seen);
+}
+
 /// The result of a method as text, without what it cost, and how many runs were swept.
 fn told(scene: &Scene, method: Method) -> (String, u64) {
     let options = Options {

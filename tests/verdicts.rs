@@ -314,7 +314,7 @@ fn covers_of_random_designs_hold() {
         let Some(start) = Start::after(&plan) else {
             continue;
         };
-        let whole = total(&Ground::new(&s, deadline), &start, None);
+        let whole = total(&Ground::new(&s, deadline), &start, &[]);
         if whole.cover.is_empty() {
             continue;
         }

@@ -3,6 +3,7 @@
 use super::fix::Fix;
 use super::peak::Peak;
 use crate::number::Rat;
+use crate::report::words::digits;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -74,6 +75,30 @@ impl Bound {
             Peak::Within(lo, hi) => Bound::within(lo, hi, digits),
         }
     }
+    /// As one decimal of at most so many significant digits, fewer where fewer are sure; both ends
+    /// where not even one is.
+    pub(super) fn decimal(&self, most: u32) -> String {
+        let Bound::Within { lo, hi } = self else {
+            return "∞".to_owned();
+        };
+        let (Ok(lo), Ok(hi)) = (lo.parse::<Rat>(), hi.parse::<Rat>()) else {
+            return String::new();
+        };
+        let size = lo.abs().max(hi.abs());
+        let wide = &hi - &lo;
+        let sure = |d: u32| &wide * &Rat::from(10).pow(d) <= size;
+        if wide.is_zero() || sure(most) {
+            return decimal(&Rat::midpoint(&lo, &hi), most);
+        }
+        if lo.sign() < 0 && lo == -&hi {
+            // Nothing is known but how small it is.
+            return format!("±{}", decimal(&hi, 2));
+        }
+        match (1..most).rev().find(|d| sure(*d)) {
+            Some(d) => decimal(&Rat::midpoint(&lo, &hi), d),
+            None => format!("{} … {}", decimal(&lo, 2), decimal(&hi, 2)),
+        }
+    }
     /// The middle as a double; infinite where unbounded.
     pub fn approx(&self) -> f64 {
         match self {
@@ -84,6 +109,45 @@ impl Bound {
             }
         }
     }
+}
+
+/// A rational number rounded to so many significant digits, without trailing zeros.
+fn decimal(x: &Rat, significant: u32) -> String {
+    if x.is_zero() {
+        return "0".to_owned();
+    }
+    let significant = significant.max(1);
+    if significant <= 15
+        && let Some(x) = x.nearest_f64()
+    {
+        return digits(x, significant as usize);
+    }
+    let ten = Rat::from(10);
+    let length = |n: &crate::number::Int| n.to_string().trim_start_matches('-').len() as i64;
+    // 10^e ≤ |x| < 10^(e+1).
+    let mut e = length(x.numer()) - length(x.denom());
+    let power = |e: i64| {
+        let p = ten.pow(u32::try_from(e.unsigned_abs()).unwrap_or(u32::MAX));
+        if e < 0 { p.recip() } else { p }
+    };
+    if power(e) > x.abs() {
+        e -= 1;
+    }
+    let places = i64::from(significant) - 1 - e;
+    let scaled = x.abs() * power(places) + Rat::frac(1, 2);
+    let mut text = scaled.numer().div_rem_floor(scaled.denom()).0.to_string();
+    let sign = if x.sign() < 0 { "−" } else { "" };
+    if places <= 0 {
+        text += &"0".repeat(places.unsigned_abs() as usize);
+        return format!("{sign}{text}");
+    }
+    let places = places as usize;
+    if text.len() <= places {
+        text = "0".repeat(places + 1 - text.len()) + &text;
+    }
+    text.insert(text.len() - places, '.');
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    format!("{sign}{text}")
 }
 
 #[cfg(test)]
@@ -101,5 +165,24 @@ mod tests {
             assert!(lo.denom().to_string().len() <= digits as usize + 3);
         }
         assert_eq!(rounded(&Rat::zero(), &Rat::zero(), 9)[1], Rat::zero());
+    }
+    /// As many digits as were asked for, and no more than are sure.
+    #[test]
+    fn decimals_show_what_is_sure() {
+        let third = Bound::within(&Rat::frac(1, 3), &Rat::frac(1, 3), 40);
+        assert_eq!(third.decimal(3), "0.333");
+        assert_eq!(third.decimal(30), format!("0.{}", "3".repeat(30)));
+        let wide = Bound::Within {
+            lo: "123/100".to_owned(),
+            hi: "124/100".to_owned(),
+        };
+        assert_eq!(wide.decimal(9), "1.2");
+        let open = Bound::Within {
+            lo: "-1".to_owned(),
+            hi: "2".to_owned(),
+        };
+        assert_eq!(open.decimal(9), "−1 … 2");
+        assert_eq!(decimal(&Rat::frac(-200, 3), 20), "−66.666666666666666667");
+        assert_eq!(decimal(&Rat::from(1_000_000), 20), "1000000");
     }
 }

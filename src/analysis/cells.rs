@@ -104,17 +104,104 @@ pub(super) struct Known {
 const TURNS: i64 = 4;
 
 pub(super) struct View<'a> {
-    pub(super) field: &'a Field,
-    pub(super) body: &'a Body,
-    pub(super) w: &'a Directions,
-    pub(super) model: Model,
-    pub(super) slab: Interval,
-    pub(super) grid: Grid,
-    pub(super) near: Vec<Vec<bool>>,
-    pub(super) known: BTreeMap<i64, Known>,
+    field: &'a Field,
+    body: &'a Body,
+    w: &'a Directions,
+    model: Model,
+    slab: Interval,
+    grid: Grid,
+    rows: Vec<Row<'a>>,
+    /// The cost of a look.
+    cost: u64,
+    known: BTreeMap<i64, Known>,
 }
 
-impl View<'_> {
+/// An obstacle's side with its begin vertex, as the pawl meets them during a slab. What does not
+/// depend on the cell is computed once.
+struct Row<'a> {
+    ring: &'a [Side],
+    side: usize,
+    /// Whether the edge itself is within reach, and not only its begin vertex.
+    edge: bool,
+    /// The row of the edge's other end, where the edge is within reach.
+    next: usize,
+    /// n·(p − q): of the hinge above the edge's line.
+    height: Interval,
+    /// A pawl side each: a·n and a×n, then m·(q − p) and m×(q − p) at the start.
+    pairs: Vec<[Interval; 4]>,
+}
+
+/// What is within reach during a slab: the sides, each with its begin vertex, and the vertices
+/// alone whose other side is.
+fn rows<'a>(
+    field: &'a Field,
+    body: &Body,
+    w: &Directions,
+    slab: Interval,
+    near: &[Vec<bool>],
+) -> Vec<Row<'a>> {
+    let mut out: Vec<Row<'a>> = Vec::new();
+    let base = body.hinge;
+    for (ring, near) in field.rings.iter().zip(near) {
+        let begin = out.len();
+        for (side, r) in ring.iter().enumerate() {
+            if !near[side] && !near[r.prev] {
+                continue;
+            }
+            let q = minus(&r.at, &base);
+            let pair = |b: &Side| {
+                [
+                    dot(&b.at, &r.normal),
+                    cross(&b.at, &r.normal),
+                    dot(&b.normal, &q),
+                    cross(&b.normal, &q),
+                ]
+            };
+            out.push(Row {
+                ring,
+                side,
+                edge: near[side],
+                next: 0,
+                height: dot(&base, &r.normal) - r.offset + slab * dot(w, &r.normal),
+                pairs: body.sides.iter().map(pair).collect(),
+            });
+        }
+        for k in begin..out.len() {
+            let other = ring[out[k].side].next;
+            // Rows are in the ring's order: most likely the one after, or the first.
+            let is = |n: usize| out.get(n).is_some_and(|row| row.side == other);
+            let next = [k + 1, begin].into_iter().find(|n| is(*n));
+            out[k].next = next
+                .or_else(|| (begin..out.len()).find(|n| is(*n)))
+                .unwrap_or(k);
+        }
+    }
+    out
+}
+
+impl<'a> View<'a> {
+    /// Of a slab of one body's motions.
+    pub(super) fn new(
+        field: &'a Field,
+        body: &'a Body,
+        w: &'a Directions,
+        (model, grid, slab): (Model, Grid, Interval),
+        near: &[Vec<bool>],
+    ) -> View<'a> {
+        let seen: usize = near.iter().flatten().filter(|n| **n).count();
+        View {
+            field,
+            body,
+            w,
+            model,
+            slab,
+            grid,
+            rows: rows(field, body, w, slab, near),
+            cost: ((seen + 1) * body.sides.len()) as u64,
+            known: BTreeMap::new(),
+        }
+    }
+
     /// The cells in which a pawl can be during the slab, from those of the slab before; None past
     /// the turns that are followed.
     pub(super) fn advance(&mut self, before: &[i64], first: bool) -> Option<Vec<i64>> {
@@ -181,9 +268,7 @@ impl View<'_> {
     }
 
     fn look(&self, cell: i64) -> Known {
-        let seen: usize = self.near.iter().flatten().filter(|n| **n).count();
-        let cost = (seen + 1) * self.body.sides.len();
-        self.field.spent.set(self.field.spent.get() + cost as u64);
+        self.field.spent.set(self.field.spent.get() + self.cost);
         let turn = self.grid.turn(cell);
         let stop = self.stop(cell);
         let mut out = Known {
@@ -198,54 +283,49 @@ impl View<'_> {
         let w = *self.w;
         let shift = [base[0] + slab * w[0], base[1] + slab * w[1]];
         let pawl = &self.body.sides;
-        // n·(R a + p − q), written so that t·(n·w) is one product.
-        let vertex = |b: &Side, r: &Side| {
-            let turned = dot(&b.at, &r.normal) * turn[0] + cross(&b.at, &r.normal) * turn[1];
-            turned + dot(&base, &r.normal) + slab * dot(&w, &r.normal) - r.offset
+        let turned = |c: Interval, s: Interval| c * turn[0] + s * turn[1];
+        // n·(R a + p − q).
+        let vertex = |b: usize, row: &Row<'_>| {
+            let [c, s, ..] = row.pairs[b];
+            turned(c, s) + row.height
         };
-        // (q − p)·R m − e.
-        let edge = |b: &Side, r: &Side| {
-            let q = minus(&r.at, &base);
-            let still = dot(&b.normal, &q) * turn[0] + cross(&b.normal, &q) * turn[1];
-            let moved = dot(&b.normal, &w) * turn[0] + cross(&b.normal, &w) * turn[1];
-            still - slab * moved - b.offset
+        // (q − p)·R m − e, for all sides of the pawl at once.
+        let moved: Vec<Interval> = pawl
+            .iter()
+            .map(|b| slab * turned(dot(&b.normal, &w), cross(&b.normal, &w)) + b.offset)
+            .collect();
+        let edges = |row: &Row<'_>| -> Vec<Interval> {
+            let each = row.pairs.iter().zip(&moved);
+            each.map(|([.., c, s], m)| turned(*c, *s) - *m).collect()
         };
         let apart =
             |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
         let side = cell.signum();
         let angle = self.grid.least_angle(cell);
-        for (ring, near) in self.field.rings.iter().zip(&self.near) {
-            if !near.iter().any(|n| *n) {
-                continue;
-            }
-            for (j, r) in ring.iter().enumerate() {
-                let here = near[j];
-                let corner = here || near[r.prev];
-                if !corner {
-                    continue;
-                }
-                for b in pawl {
-                    let fa = edge(b, r);
-                    let touch_a = corner && r.convex && fa.contains(0.0);
-                    if !here {
-                        out.holds |= !out.holds && touch_a && {
-                            self.type_a(b, r, ring, &turn, &shift, side, angle)
-                        };
-                        continue;
-                    }
-                    let fb = vertex(b, r);
-                    if apart(fb, vertex(&pawl[b.next], r)) && apart(fa, edge(b, &ring[r.next])) {
+        let mut known: Vec<Option<Vec<Interval>>> = vec![None; self.rows.len()];
+        for (k, row) in self.rows.iter().enumerate() {
+            let r = &row.ring[row.side];
+            let fa = known[k].get_or_insert_with(|| edges(row)).clone();
+            if row.edge {
+                let fb: Vec<Interval> = (0..pawl.len()).map(|b| vertex(b, row)).collect();
+                let crossing = |b: usize| apart(fb[b], fb[pawl[b].next]);
+                if (0..pawl.len()).any(crossing) {
+                    let next = known[row.next].get_or_insert_with(|| edges(&self.rows[row.next]));
+                    if (0..pawl.len()).any(|b| crossing(b) && apart(fa[b], next[b])) {
                         out.blocked = true;
                         return out;
                     }
-                    if out.holds {
-                        continue;
-                    }
-                    let touch_b = b.convex && fb.contains(0.0);
-                    out.holds = touch_a && self.type_a(b, r, ring, &turn, &shift, side, angle)
-                        || touch_b && self.type_b(b, r, &turn, &shift, side, angle);
                 }
+                out.holds = out.holds
+                    || pawl.iter().zip(&fb).any(|(b, f)| {
+                        b.convex && f.contains(0.0) && self.type_b(b, r, &turn, &shift, side, angle)
+                    });
             }
+            out.holds = out.holds
+                || r.convex
+                    && pawl.iter().zip(&fa).any(|(b, f)| {
+                        f.contains(0.0) && self.type_a(b, r, row.ring, &turn, &shift, side, angle)
+                    });
         }
         out
     }

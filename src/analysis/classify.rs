@@ -9,6 +9,7 @@
 
 use super::critical::least_friction;
 use super::escape::{Ground, Start};
+use super::forces::resistance;
 use super::peak::{Peak, Peaked, force, higher};
 use super::stretch::{Stretch, stretches};
 use crate::geometry::Vec2;
@@ -63,6 +64,9 @@ pub struct Direction {
     pub with_friction: bool,
     /// The highest contact force of that motion over all pawls, where it was asked for.
     pub peak: Option<(Peaked, usize)>,
+    /// The largest push against the travel that the root needs in that motion, all pawls
+    /// together, where it ran its length and critical values were asked for.
+    pub root_force: Option<Peak>,
     /// The infimum of the μ that locks this direction, with the pawl that does it; None where it
     /// is blocked without friction, or no μ does.
     pub critical: Option<(Algebraic, usize)>,
@@ -203,6 +207,7 @@ pub fn direction(
         run: smooth,
         with_friction: false,
         peak: None,
+        root_force: None,
         critical: None,
     };
     if blocks(&out.run) {
@@ -234,6 +239,9 @@ pub fn direction(
     let mu = scene.friction.as_ref().unwrap_or(&zero);
     if critical || limit.is_some() {
         out.peak = highest(scene, &slid, mu, 40);
+    }
+    if critical && out.peak.is_some() {
+        out.root_force = resistance(scene, ground, &out.run);
     }
     if let Some(limit) = limit {
         let mut goal = 40;

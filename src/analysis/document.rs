@@ -38,16 +38,24 @@ pub struct ClassifyDocument {
     pub critical_friction: Option<Num>,
     /// The infimum of the μ at which the plan itself sticks.
     pub critical_friction_forward: Option<Num>,
-    /// The force limit at which the family lets go: below it a force holds every direction that
-    /// nothing else blocks. Null where all are blocked anyway or no pawl has a stiffness.
+    /// The contact force at which the family lets go: at a force limit below it a force holds every
+    /// direction that nothing else blocks. Null where all are blocked anyway or no pawl has a
+    /// stiffness.
     pub critical_force: Option<Bound>,
+    /// What that means at the root, where a designer measures: the largest push against the travel,
+    /// all pawls together, of the direction that takes the least.
+    pub critical_root_force: Option<Bound>,
     /// What the verdict rests on.
     pub assumed: Vec<&'static str>,
     /// What was left out of the model, because it was not needed or not given.
     pub not_modelled: Vec<&'static str>,
     /// The family, in order.
     pub directions: Vec<DirectionDocument>,
-    /// Arcs that cover the circle, each proven at least as firmly blocked as it says.
+    /// How far a direction of the circle was run to count as a way out; null where the circle was
+    /// not asked for. The directions of the family run the length of the phase that they reverse.
+    pub escape_distance: Option<Num>,
+    /// Arcs that cover the circle, each proven at least as firmly blocked as it says. An arc of
+    /// `none` gets out wherever it was tried; nothing is claimed of it.
     pub cover: Vec<ArcDocument>,
     /// Where the exact verdicts of single directions flip.
     pub flips: Vec<FlipDocument>,
@@ -77,6 +85,8 @@ pub struct DirectionDocument {
     pub critical_friction: Option<Num>,
     /// The highest contact force of the escape, where it was held against the limit.
     pub peak_force: Option<Bound>,
+    /// The largest push that the escape needs at the root, all pawls together.
+    pub peak_root_force: Option<Bound>,
     /// A plan that gets out: append it to the scene's.
     pub plan: Option<String>,
 }
@@ -243,7 +253,12 @@ pub fn classify_with_way(
     let wants = scene.classify.as_ref().is_some_and(|c| c.total);
     let circle = family.start.as_ref().filter(|_| wants).map(|start| {
         let ground = Ground::asked(scene, ask);
-        total(&ground, start, family.class)
+        let also: Vec<Vec2> = family
+            .directions
+            .iter()
+            .map(|d| d.velocity.clone())
+            .collect();
+        total(&ground, start, &also)
     });
     let weakest = family.directions.iter().min_by_key(|d| d.verdict);
     let relative_way = weakest.map(|d| (d.velocity.clone(), run_time(d)));
@@ -290,6 +305,7 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
         arcs.filter_map(|a| a.verdict).any(|v| least.contains(&v))
     };
     let rubs = scene.friction.as_ref().is_some_and(|m| m.sign() > 0);
+    let sprung = scene.pawls.iter().any(|p| p.stiffness.is_some());
     let rubbed = family.directions.iter().any(|d| d.with_friction)
         || rubs && covered(&[Verdict::Friction, Verdict::Force]);
     let limited = scene
@@ -313,17 +329,25 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
     place(
         rubbed,
         "Coulomb friction, one coefficient throughout",
-        "friction",
+        match (&scene.friction, rubs) {
+            (None, _) => "friction (none is given)",
+            (_, false) => "friction (its coefficient is 0)",
+            _ => "friction (given, but this verdict does not need it)",
+        },
     );
     place(
         pushed,
         "linear torsional springs; the force limit bounds each contact force",
-        "stiffness and forces",
+        match (sprung, limited) {
+            (false, _) => "forces (no pawl has a stiffness)",
+            (_, false) => "a force limit (none is given: forces decide nothing here)",
+            _ => "forces (a limit is given, but this verdict does not need it)",
+        },
     );
     place(
         scene.root.is_some(),
         "the root blocks where it collides",
-        "root collision",
+        "root collision (no root is given)",
     );
     ClassifyDocument {
         schema: "snapfit.classify/1",
@@ -357,6 +381,9 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
                 .collect()
         }),
         critical_force: critical_force(family),
+        critical_root_force: least(free(family).map(|d| d.root_force.as_ref()))
+            .map(|p| Bound::of(p, 6)),
+        escape_distance: circle.map(|t| Num::of_rat(&t.distance)),
         flips: circle.map_or_else(Vec::new, |t| t.flips.iter().map(flip).collect()),
         samples: circle.map_or_else(Vec::new, |t| {
             let of = |s: &Sample| SampleDocument {
@@ -390,26 +417,33 @@ fn flip(f: &Flip) -> FlipDocument {
     }
 }
 
-/// The least peak of the directions that nothing else blocks: at a larger limit that one gets out.
-fn critical_force(family: &Relative) -> Option<Bound> {
-    let free = family
-        .directions
-        .iter()
-        .filter(|d| d.verdict <= Verdict::Force && !d.open);
-    let peaks: Option<Vec<&Peak>> = free.map(|d| Some(&d.peak.as_ref()?.0.peak)).collect();
-    let least = peaks?.into_iter().reduce(|a, b| match (a, b) {
+/// The directions that neither shapes nor friction block.
+fn free(family: &Relative) -> impl Iterator<Item = &Direction> {
+    let all = family.directions.iter();
+    all.filter(|d| d.verdict <= Verdict::Force && !d.open)
+}
+
+/// The least of some peaks, if all are known.
+fn least<'a>(peaks: impl Iterator<Item = Option<&'a Peak>>) -> Option<&'a Peak> {
+    let peaks: Option<Vec<&Peak>> = peaks.collect();
+    peaks?.into_iter().reduce(|a, b| match (a, b) {
         (Peak::Unbounded, b) => b,
         (a, Peak::Unbounded) => a,
         (Peak::Within(_, x), Peak::Within(_, y)) if x <= y => a,
         _ => b,
-    })?;
-    Some(Bound::of(least, 12))
+    })
+}
+
+/// The least peak of the directions that nothing else blocks: at a larger limit that one gets out.
+fn critical_force(family: &Relative) -> Option<Bound> {
+    let peaks = free(family).map(|d| d.peak.as_ref().map(|p| &p.0.peak));
+    Some(Bound::of(least(peaks)?, 12))
 }
 
 fn arc_reason(scene: &Scene, a: &Arc) -> String {
     let proof = match a.verdict {
         None => "nothing is proven",
-        Some(Verdict::None) => "nothing is claimed",
+        Some(Verdict::None) => return "gets out wherever it was tried".to_owned(),
         Some(Verdict::Force) => "held by friction, or by more than the force limit",
         Some(Verdict::Friction) => "held by friction where the shapes alone do not",
         Some(Verdict::Kinematic) => "the shapes alone hold",
@@ -443,8 +477,19 @@ fn direction(scene: &Scene, d: &Direction) -> DirectionDocument {
         friction_modelled: d.with_friction,
         critical_friction: d.critical.as_ref().map(|c| Num::of(&c.0)),
         peak_force: d.peak.as_ref().map(|p| Bound::of(&p.0.peak, 12)),
+        peak_root_force: d.root_force.as_ref().map(|p| Bound::of(p, 6)),
         plan,
     }
+}
+
+/// A direction in a sentence.
+fn towards(v: &Vec2) -> String {
+    let [x, y] = pair(v).map(|c| words::short(&c));
+    format!("({x}, {y})")
+}
+
+fn same_way(a: &Vec2, b: &Vec2) -> bool {
+    a.cross(b).is_zero() && a.dot(b).sign() > 0
 }
 
 fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
@@ -467,7 +512,7 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
     let Some(weakest) = family.directions.iter().min_by_key(|d| d.verdict) else {
         return "no direction to decide".to_owned();
     };
-    let way = format!("({}, {})", weakest.velocity.x, weakest.velocity.y);
+    let way = towards(&weakest.velocity);
     let mut text = match weakest.verdict {
         Verdict::None if weakest.open => {
             format!(
@@ -487,9 +532,9 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
                 format!(" ({})", touching.join(", "))
             };
             format!(
-                "along {way} it ends {} at t = {}, by {by}{on}",
+                "along {way} it ends {} at t {}, by {by}{on}",
                 met.kind,
-                words::short(&met.time)
+                words::equals(&met.time)
             )
         }
     };
@@ -498,7 +543,9 @@ fn reason(scene: &Scene, family: &Relative, circle: Option<&Total>) -> String {
     }
     if let Some(t) = circle {
         match (&t.escape, t.class) {
-            (Some(w), _) => text += &format!("; along ({}, {}) it gets out", w.x, w.y),
+            // Said already, where it is the family's own way out.
+            (Some(w), _) if weakest.verdict == Verdict::None && same_way(w, &weakest.velocity) => {}
+            (Some(w), _) => text += &format!("; along {} it gets out", towards(w)),
             (None, Some(c)) if t.undecided_width == 0.0 => {
                 text += &format!("; every direction is blocked, at least by {}", c.name());
             }

@@ -14,7 +14,7 @@ fn shade(verdict: &str) -> &'static str {
         "kinematic" => "#1d3557",
         "friction" => "#457b9d",
         "force" => "#e9a03b",
-        "none" => "#ffffff",
+        "none" => "#f3b8b0",
         _ => "#d8dde3",
     }
 }
@@ -132,9 +132,15 @@ pub fn force_plot(doc: &ForcesDocument) -> String {
             y += 17.0;
         }
     }
-    let legend =
-        "dashed: without friction; rings: the handbook's formula at the largest deflection";
-    page.text(width - 32.0, 52.0, 11.0, MUTED, "end", false, legend);
+    let mut marks = vec!["→ ←: which way the root goes; below 0 it is pulled along"];
+    if phases.iter().any(|p| !p.smooth.is_empty()) {
+        marks.push("dashed: without friction");
+    }
+    if phases.iter().any(|p| !p.handbook.is_empty()) {
+        marks.push("rings: the handbook's formula at the largest deflection");
+    }
+    let legend = marks.join("; ");
+    page.text(width - 32.0, 52.0, 11.0, MUTED, "end", false, &legend);
     page.text(
         axis.rect[0] + axis.rect[2] / 2.0,
         axis.rect[1] + axis.rect[3] + 33.0,
@@ -142,7 +148,13 @@ pub fn force_plot(doc: &ForcesDocument) -> String {
         INK,
         "middle",
         false,
-        "travel",
+        "travel of the root, in the scene's unit of length",
+    );
+    page.upward(
+        [18.0, axis.rect[1] + axis.rect[3] / 2.0],
+        12.0,
+        INK,
+        "push against the travel, in the unit of stiffness per length",
     );
     page.finish(width, height.max(y + 20.0), &doc.scene, &title)
 }
@@ -236,15 +248,19 @@ fn grid(page: &mut Svg, axis: &Axis) {
 /// The circle of directions: the cover's arcs by what is proven of them, single directions as
 /// dots, flips as ticks, the family as arrows.
 pub fn rose(doc: &ClassifyDocument) -> String {
-    let (width, height) = (620.0, 640.0);
+    let (width, height) = (740.0, 668.0);
     let mut page = Svg::new();
     let class = doc.class.unwrap_or("no class");
     let title = match doc.extent {
         Some(extent) => format!("{}: {extent} {class} diode", doc.scene),
         None => format!("{}: {class}", doc.scene),
     };
+    let title = match doc.total {
+        Some("none") if doc.extent.is_some() => title + "; not in every direction",
+        _ => title,
+    };
     page.text(28.0, 34.0, 17.0, INK, "start", true, &title);
-    let (cx, cy, outer, inner) = (310.0, 320.0, 220.0, 150.0);
+    let (cx, cy, outer, inner) = (370.0, 316.0, 210.0, 145.0);
     let read = |p: &[String; 2]| {
         let of = |s: &String| {
             s.parse::<crate::number::Rat>()
@@ -282,6 +298,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
         }
     }
     page.circle([cx, cy], inner, "#ffffff", RULE, 1.0);
+    marks(&mut page, &at, outer + 20.0);
     for s in &doc.samples {
         let fill = shade(s.verdict);
         page.circle(at(angle(&s.direction), outer + 12.0), 3.4, fill, INK, 0.8);
@@ -307,7 +324,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
     }
     if let Some(e) = &doc.escape {
         let phi = e[1].approx().atan2(e[0].approx());
-        page.arrow(at(phi, inner - 14.0), at(phi, outer + 40.0), "#c1121f");
+        page.arrow(at(phi, inner - 14.0), at(phi, outer + 34.0), "#c1121f");
     }
     let mut x = 28.0;
     for verdict in seen {
@@ -315,20 +332,42 @@ pub fn rose(doc: &ClassifyDocument) -> String {
         page.text(x + 18.0, 601.0, 12.0, INK, "start", false, verdict);
         x += 40.0 + text_width(verdict, 12.0);
     }
-    if !doc.flips.is_empty() {
+    if !doc.flips.is_empty() || doc.escape.is_some() {
+        let red = "red: where the verdict flips, and arrows that get out";
+        page.text(x, 601.0, 12.0, "#c1121f", "start", false, red);
+    }
+    let notes = [
+        "the angle says which way the root is moved from the end of the plan",
+        "ring: whole arcs, each proven to hold so firmly; none: got out wherever it was tried",
+        "dots: single directions, decided exactly; arrows inside: the control family; outside: a way out",
+    ];
+    for (k, note) in notes.into_iter().enumerate() {
         page.text(
-            x,
-            601.0,
-            12.0,
-            "#c1121f",
+            28.0,
+            622.0 + 15.0 * k as f64,
+            11.0,
+            MUTED,
             "start",
             false,
-            "red: flips, and what gets out",
+            note,
         );
     }
-    let note = "ring: proven of whole arcs; dots: single directions; arrows: the control family";
-    page.text(28.0, 624.0, 11.0, MUTED, "start", false, note);
     page.finish(width, height, &doc.scene, &title)
+}
+
+/// Angles round the rose, every 30°, counter-clockwise from x.
+fn marks(page: &mut Svg, at: &dyn Fn(f64, f64) -> [f64; 2], r: f64) {
+    for k in 0..12 {
+        let phi = f64::from(k) * std::f64::consts::PI / 6.0;
+        page.line(at(phi, r), at(phi, r + 6.0), MUTED, 0.9, "");
+        let [x, y] = at(phi, r + 30.0);
+        let text = match k {
+            0 => "0° (+x)".to_owned(),
+            3 => "90° (+y)".to_owned(),
+            _ => format!("{}°", 30 * k),
+        };
+        page.text(x, y + 4.0, 10.5, MUTED, "middle", false, &text);
+    }
 }
 
 /// Two pictures, one under the other, as one.

@@ -37,6 +37,8 @@ pub(super) struct Slide<'a> {
     pub(super) rig: &'a Rig,
     /// A bound of the contact force over its stretch; None where there is none.
     pub(super) bound: Option<Rat>,
+    /// Whether the contact force over its stretch is proven to have no bound.
+    pub(super) unbounded: bool,
 }
 
 /// A window: the same slides throughout.
@@ -77,6 +79,44 @@ fn at(t: &Time, b: Bits) -> Fix {
 /// Values and slopes of the five quantities.
 type Five = [(Fix, Option<Fix>); QUANTITIES];
 
+/// The five quantities of some loads together, with their slopes: by their own variable where one
+/// is alone, else by time.
+fn summed(loads: &[Load], b: Bits) -> Five {
+    let single = loads.len() == 1;
+    let zero = || (b.int(0), Some(b.int(0)));
+    let mut sum = [zero(), zero(), zero(), zero()];
+    for l in loads {
+        let rate = l.clock.order(1);
+        for (total, q) in sum
+            .iter_mut()
+            .zip([&l.resistance, &l.force[0], &l.force[1], &l.torque])
+        {
+            total.0 = total.0.add(&q.order(0));
+            // By its own variable where it is alone, else by time.
+            let slope = if single {
+                Some(q.order(1))
+            } else {
+                q.order(1).div(&rate)
+            };
+            total.1 = total.1.as_ref().zip(slope).map(|(a, s)| a.add(&s));
+        }
+    }
+    let [(w, dw), (x, dx), (y, dy), (m, dm)] = sum;
+    let square = x.mul(&x).add(&y.mul(&y));
+    let two = b.int(2);
+    let slope = dx
+        .zip(dy)
+        .map(|(dx, dy)| x.mul(&dx).add(&y.mul(&dy)).mul(&two));
+    let minus = |d: &Option<Fix>| d.as_ref().map(Fix::neg);
+    [
+        (w.clone(), dw.clone()),
+        (w.neg(), minus(&dw)),
+        (square, slope),
+        (m.clone(), dm.clone()),
+        (m.neg(), minus(&dm)),
+    ]
+}
+
 impl Window<'_> {
     /// The variable of its cells at both ends: the position of the only contact, or time.
     fn ends(&self, b: Bits) -> Option<[Fix; 2]> {
@@ -107,40 +147,17 @@ impl Window<'_> {
     }
 
     fn five(&self, cell: [&Fix; 2], b: Bits) -> Option<Five> {
-        let loads = self.loads(cell, 2, b)?;
-        let single = loads.len() == 1;
-        let zero = || (b.int(0), Some(b.int(0)));
-        let mut sum = [zero(), zero(), zero(), zero()];
-        for l in &loads {
-            let rate = l.clock.order(1);
-            for (total, q) in
-                sum.iter_mut()
-                    .zip([&l.resistance, &l.force[0], &l.force[1], &l.torque])
-            {
-                total.0 = total.0.add(&q.order(0));
-                // By its own variable where it is alone, else by time.
-                let slope = if single {
-                    Some(q.order(1))
-                } else {
-                    q.order(1).div(&rate)
-                };
-                total.1 = total.1.as_ref().zip(slope).map(|(a, s)| a.add(&s));
-            }
+        Some(summed(&self.loads(cell, 2, b)?, b))
+    }
+
+    /// The five quantities over a sliver beside an end at which a single contact is on the edge of
+    /// its cone with the spring at rest.
+    fn beside(&self, late: bool, place: &Fix, b: Bits) -> Option<Five> {
+        let [s] = &self.slides[..] else { return None };
+        if self.t[usize::from(late)] != s.part.t[usize::from(late)] {
+            return None;
         }
-        let [(w, dw), (x, dx), (y, dy), (m, dm)] = sum;
-        let square = x.mul(&x).add(&y.mul(&y));
-        let two = b.int(2);
-        let slope = dx
-            .zip(dy)
-            .map(|(dx, dy)| x.mul(&dx).add(&y.mul(&dy)).mul(&two));
-        let minus = |d: &Option<Fix>| d.as_ref().map(Fix::neg);
-        Some([
-            (w.clone(), dw.clone()),
-            (w.neg(), minus(&dw)),
-            (square, slope),
-            (m.clone(), dm.clone()),
-            (m.neg(), minus(&dm)),
-        ])
+        Some(summed(&[s.part.sliver(late, place, s.rig, b)?], b))
     }
 
     /// Upper bounds of the five quantities over a cell where some balance may be singular; None
@@ -246,10 +263,24 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best], stop: &dyn F
     let Some(ends) = w.ends(fine) else {
         return unsettled(w, best);
     };
-    // Loads grow past every bound only towards an end.
+    let (mut l, mut r) = (ends[0].hi(), ends[1].lo());
+    let forward = l <= r;
+    if !forward {
+        (l, r) = (ends[1].hi(), ends[0].lo());
+    }
+    // Loads grow past every bound only towards an end; where the contact begins on the edge of
+    // its cone they jump there, and stay finite.
     let mut singular = false;
-    for e in &ends {
-        match w.five([e, e], fine) {
+    let sliver = (&r - &l) * Rat::from(2).pow(goal + 8).recip();
+    for (late, e) in ends.iter().enumerate() {
+        let low = (late == 0) == forward;
+        let place = if low { &l + &sliver } else { &r - &sliver };
+        let five = w.five([e, e], fine).or_else(|| {
+            let five = w.beside(late == 1, &fine.rat(&place), fine)?;
+            *if low { &mut l } else { &mut r } = place;
+            Some(five)
+        });
+        match five {
             Some(five) => {
                 for (k, v) in five.iter().enumerate() {
                     best[k].attain(&v.0, || w.time(e, fine));
@@ -257,10 +288,6 @@ fn search(w: &Window<'_>, goal: u32, fine: Bits, best: &mut [Best], stop: &dyn F
             }
             None => singular = true,
         }
-    }
-    let (mut l, mut r) = (ends[0].hi(), ends[1].lo());
-    if l > r {
-        (l, r) = (ends[1].hi(), ends[0].lo());
     }
     if l >= r {
         return;
@@ -415,41 +442,106 @@ fn unsettled(w: &Window<'_>, best: &mut [Best]) {
     }
 }
 
+/// The work of the drive.
+#[derive(Clone, Debug)]
+pub(super) enum Work {
+    /// Between two rational numbers.
+    Within([Rat; 2]),
+    /// It grows past every bound towards this instant of the phase.
+    Unbounded(Time),
+    /// Not settled within the budget or the time.
+    Open,
+}
+
+impl Work {
+    /// Nothing done.
+    pub(super) fn zero() -> Work {
+        Work::Within([Rat::zero(), Rat::zero()])
+    }
+    /// The sum: past every bound if one of them is (work against friction is never regained).
+    pub(super) fn plus(self, o: Work) -> Work {
+        match (self, o) {
+            (Work::Unbounded(t), _) | (_, Work::Unbounded(t)) => Work::Unbounded(t),
+            (Work::Within([a, b]), Work::Within([c, d])) => Work::Within([a + c, b + d]),
+            _ => Work::Open,
+        }
+    }
+}
+
+/// The order at which the Taylor sums that integrate the work are cut off: even, and the higher
+/// the more bits are asked for, so that the cells need not be ever smaller instead.
+fn order(goal: u32) -> usize {
+    (8 + 2 * (goal as usize / 16)).min(64)
+}
+
 /// The work of the drive along a slide, as an enclosure about 10^-digits wide relative to the
-/// largest spring energy; None where it is not bounded, or not settled.
-pub(super) fn work(s: &Slide<'_>, goal: u32, stop: &dyn Fn() -> bool) -> Option<[Rat; 2]> {
-    let b = Bits(u64::from(goal) + 48);
-    let k = b.rat(&s.rig.stiffness);
-    let half = b.rat(&Rat::frac(1, 2));
+/// largest spring energy.
+///
+/// Without friction all of it is spring energy. With friction the power is integrated: cells of
+/// the position by Taylor sums with certified remainders, halved towards an end where the balance
+/// is singular. Where the spring is wound there, the contact force grows like 1/(distance), and
+/// its integral past every bound; where it is at rest there, the quotient is a finite one.
+pub(super) fn work(s: &Slide<'_>, goal: u32, stop: &dyn Fn() -> bool) -> Work {
+    if s.part.stretch.touch.is_none() {
+        return Work::zero();
+    }
+    let b = Bits(u64::from(goal) + 64);
     let ends = [s.part.end(false, b), s.part.end(true, b)];
+    let k = b.rat(&(&s.rig.stiffness * &Rat::frac(1, 2)));
     let energy = |x: &Fix| {
         let a = s.part.angle(x, b);
-        a.mul(&a).mul(&k).mul(&half)
+        a.mul(&a).mul(&k)
     };
-    let stored = energy(&ends[1]).sub(&energy(&ends[0]));
-    if s.part.stretch.touch.is_none() {
-        return Some([Rat::zero(), Rat::zero()]);
-    }
+    let (first, last) = (energy(&ends[0]), energy(&ends[1]));
     if s.rig.mu.is_zero() {
-        return Some([stored.lo(), stored.hi()]);
+        let stored = last.sub(&first);
+        return Work::Within([stored.lo(), stored.hi()]);
     }
-    let largest = energy(&ends[0]).hi().max(energy(&ends[1]).hi());
+    rubbed(s, &ends, first.hi().max(last.hi()), goal, b, stop)
+}
+
+/// The part with friction; `largest` bounds the spring energy.
+fn rubbed(
+    s: &Slide<'_>,
+    ends: &[Fix; 2],
+    largest: Rat,
+    goal: u32,
+    b: Bits,
+    stop: &dyn Fn() -> bool,
+) -> Work {
     let fineness = Rat::from(2).pow(goal + 3).recip();
     let tolerance = &largest * &fineness;
     let forward = ends[0].lo() <= ends[1].lo();
-    let (l, r) = if forward {
+    let (mut l, mut r) = if forward {
         (ends[0].hi(), ends[1].lo())
     } else {
         (ends[1].hi(), ends[0].lo())
     };
-    let mut sum = b.int(0);
-    // The slivers at the ends, narrower than the precision.
-    for e in &ends {
-        let w = s.part.load(e, s.rig, 2, b)?.work.order(0);
-        let width = b.rat(&(e.hi() - e.lo()));
-        sum = sum.add(&w.mul(&width).join(&b.int(0)));
-    }
     let whole = &r - &l;
+    let mut sum = b.int(0);
+    for (late, e) in ends.iter().enumerate() {
+        if let Some(at) = s.part.load(e, s.rig, 2, b) {
+            // An end is known to the precision only.
+            let width = b.rat(&(e.hi() - e.lo()));
+            sum = sum.add(&at.work.order(0).mul(&width).join(&b.int(0)));
+            continue;
+        }
+        if s.unbounded {
+            return match s.part.diverges(e, s.rig, b) {
+                true => Work::Unbounded(s.part.t[late].clone()),
+                false => Work::Open,
+            };
+        }
+        let step = &whole * Rat::from(2).pow(goal / 2 + 8).recip();
+        let low = (late == 0) == forward;
+        let place = if low { &l + &step } else { &r - &step };
+        let Some(near) = s.part.sliver(late == 1, &b.rat(&place), s.rig, b) else {
+            return Work::Open;
+        };
+        let bit = near.work.order(0).mul(&b.rat(&place).sub(e));
+        sum = sum.add(&if low { bit } else { bit.neg() });
+        *if low { &mut l } else { &mut r } = place;
+    }
     let mut cells = vec![(l, r)];
     let mut budget = 3000;
     while let Some((l, r)) = cells.pop() {
@@ -458,36 +550,27 @@ pub(super) fn work(s: &Slide<'_>, goal: u32, stop: &dyn Fn() -> bool) -> Option<
         }
         budget -= 1;
         if stop() {
-            return None;
+            return Work::Open;
         }
         let mid = Rat::midpoint(&l, &r);
-        let h = b.rat(&(&r - &mid));
-        let taylor = |order: usize| {
-            let over = s.part.load(&b.hull(&l, &r), s.rig, order + 2, b)?.work;
-            let point = s.part.load(&b.rat(&mid), s.rig, order + 1, b)?.work;
-            let mut power = h.clone();
-            let mut value = b.int(0);
-            for k in 0..order {
-                if k % 2 == 0 {
-                    let by = b.rat(&Rat::frac(2, k as i64 + 1));
-                    value = value.add(&point.order(k).mul(&power).mul(&by));
-                }
-                power = power.mul(&h);
-            }
-            let by = b.rat(&Rat::frac(2, order as i64 + 1));
-            // The order is even: (x − m)^order has one sign.
-            let rest = over.order(order).mul(&power).mul(&by);
-            Some(value.add(&rest))
-        };
-        let got = taylor(8).filter(|v| {
-            // Its share of the error by length, or by what it contributes.
+        let got = integral(s, [&l, &mid, &r], order(goal), b).filter(|v| {
+            // Its share of the error by length, by what it contributes, or as one of many.
             let share = &tolerance * &(&(&r - &l) / &whole);
             let own = v.abs().lo() * &fineness;
-            v.hi() - v.lo() <= share.max(own)
+            let few = &tolerance * &Rat::frac(1, 256);
+            v.hi() - v.lo() <= share.max(own).max(few)
         });
         match got {
             Some(v) => sum = sum.add(&v),
-            None if budget <= 0 => return None,
+            None if budget <= 0 => {
+                let cell = b.hull(&l, &r);
+                let grown = s.unbounded && s.part.diverges(&cell, s.rig, b);
+                let at = &s.part.t[usize::from(forward)];
+                return match grown {
+                    true => Work::Unbounded(at.clone()),
+                    false => Work::Open,
+                };
+            }
             None => {
                 cells.push((l, mid.clone()));
                 cells.push((mid, r));
@@ -495,7 +578,20 @@ pub(super) fn work(s: &Slide<'_>, goal: u32, stop: &dyn Fn() -> bool) -> Option<
         }
     }
     let signed = if forward { sum } else { sum.neg() };
-    Some([signed.lo(), signed.hi()])
+    Work::Within([signed.lo(), signed.hi()])
+}
+
+/// The work over a cell [l, r] of the position about its middle: the Taylor sum of the power in
+/// units of half the cell, whose last term is taken over the whole cell.
+fn integral(s: &Slide<'_>, [l, mid, r]: [&Rat; 3], order: usize, b: Bits) -> Option<Fix> {
+    let pace = b.rat(&(r - mid));
+    let over = s.part.load_at(&b.hull(l, r), &pace, s.rig, order + 2, b)?;
+    let point = s.part.load_at(&b.rat(mid), &pace, s.rig, order + 1, b)?;
+    // Odd powers integrate to nothing; the last order is even, so its power has one sign.
+    let by = |k: usize| b.rat(&Rat::frac(2, k as i64 + 1));
+    let rest = over.work.order(order).mul(&by(order));
+    let terms = (0..order).step_by(2);
+    Some(terms.fold(rest, |sum, k| sum.add(&point.work.order(k).mul(&by(k)))))
 }
 
 /// The loads of all slides together at an instant of a phase (with their sum where several

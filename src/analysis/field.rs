@@ -10,7 +10,6 @@ use crate::contact::{PawlShape, Ring};
 use crate::geometry::Vec2;
 use crate::number::{Interval, Rat};
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 /// What is in the model of a proof.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -94,11 +93,17 @@ pub(super) struct Field {
     pub(super) pawls: Vec<Body>,
     /// Cells looked at so far, times the corners in view.
     pub(super) spent: Cell<u64>,
+    /// How many it may be.
+    pub(super) allowed: Cell<u64>,
 }
 
 /// How much a cover may cost before the rest is left undecided; the paper's Fig. 5, extended,
 /// takes a few hundredths of it.
 const WORK: u64 = 2_000_000_000;
+
+/// Past so many pairs of sides within reach at once nothing is tried: their table would fill the
+/// memory, and the work would be over after a few cells anyway.
+const PAIRS: usize = 4_000_000;
 
 pub(super) struct Body {
     pub(super) sides: Vec<Side>,
@@ -177,6 +182,7 @@ impl Field {
                 .map(|(i, s)| body(i, s))
                 .collect(),
             spent: Cell::new(0),
+            allowed: Cell::new(WORK),
         }
     }
 
@@ -230,23 +236,19 @@ impl Field {
             if slab.lo >= root {
                 return true;
             }
-            if self.spent.get() > WORK
+            if self.spent.get() > self.allowed.get()
                 || grain
                     .deadline
                     .is_some_and(|d| std::time::Instant::now() >= d)
             {
                 return false;
             }
-            let mut view = View {
-                field: self,
-                body,
-                w,
-                model,
-                slab,
-                grid,
-                near: self.near(body, w, slab),
-                known: BTreeMap::new(),
-            };
+            let near = self.near(body, w, slab);
+            let seen = near.iter().flatten().filter(|n| **n).count();
+            if seen.saturating_mul(body.sides.len()) > PAIRS {
+                return false;
+            }
+            let mut view = View::new(self, body, w, (model, grid, slab), &near);
             match view.advance(&live, first) {
                 Some(next) => live = next,
                 None => return false,

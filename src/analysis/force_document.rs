@@ -20,6 +20,8 @@ pub struct ForcesDocument {
     pub outcome: &'static str,
     /// Whether any pawl has a stiffness; without one there are no forces.
     pub modelled: bool,
+    /// How many significant digits were asked for.
+    pub digits: u32,
     /// What was left out, in words; null where nothing was.
     pub note: Option<String>,
     /// Over the whole motion and all pawls; null where no pawl has a stiffness.
@@ -158,9 +160,11 @@ pub struct PhaseForces {
     pub peak: Option<RootPeak>,
     /// Without friction; null where the scene has none, or it was not asked for.
     pub peak_without_friction: Option<RootPeak>,
-    /// What the drive puts in: null where it is not bounded, as where friction holds at last, or
-    /// where it was not asked for.
+    /// What the drive puts in; `unbounded` where friction holds at last with the spring wound;
+    /// null where it was not asked for, or a limit stopped the search.
     pub work: Option<Bound>,
+    /// Why the work is unbounded, or was not settled; null elsewhere.
+    pub work_note: Option<String>,
     /// Without friction: what goes into the springs.
     pub work_without_friction: Option<Bound>,
     /// Spring energy set free by snaps; null where the work was not asked for.

@@ -85,6 +85,7 @@ pub fn forces(scene: &Scene, wish: &Wish, ask: &Ask) -> Result<ForcesDocument, P
         scene: scene.name.clone(),
         outcome: run.outcome.kind.name(),
         modelled,
+        digits: wish.digits,
         note: note(scene, &run),
         peak: None,
         pawls: Vec::new(),
@@ -147,6 +148,17 @@ pub fn forces(scene: &Scene, wish: &Wish, ask: &Ask) -> Result<ForcesDocument, P
         last.back = out.root.as_ref().is_some_and(|r| r.way_back.is_some());
     }
     Ok(out)
+}
+
+/// The largest resistance at the root along a motion of one phase; None where the time ran out.
+pub(super) fn resistance(scene: &Scene, ground: &Ground<'_>, run: &Trajectory) -> Option<Peak> {
+    let wish = Wish {
+        root: true,
+        ..Wish::default()
+    };
+    let way = Way::new(scene, ground, run, &wish);
+    let peak = way.resistance(0);
+    (!ground.late()).then_some(peak)
 }
 
 /// What a reader of the peaks has to know.

@@ -23,11 +23,11 @@ impl Jet {
         c[0] = x;
         Jet { c, b }
     }
-    /// The variable itself.
-    pub(super) fn variable(x: Fix, n: usize, b: Bits) -> Jet {
+    /// A variable that moves at a pace.
+    pub(super) fn moving(x: Fix, pace: Fix, n: usize, b: Bits) -> Jet {
         let mut j = Jet::constant(x, n, b);
         if n > 1 {
-            j.c[1] = b.int(1);
+            j.c[1] = pace;
         }
         j
     }
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn series_have_the_known_coefficients() {
         let b = Bits(80);
-        let x = Jet::variable(b.int(0), 6, b);
+        let x = Jet::moving(b.int(0), b.int(1), 6, b);
         let a = x.atan().expect("defined");
         for (k, want) in [(1, (1, 1)), (3, (-1, 3)), (5, (1, 5)), (2, (0, 1))] {
             let want = b.rat(&Rat::frac(want.0, want.1));

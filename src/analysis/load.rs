@@ -19,7 +19,7 @@
 use super::fix::{Bits, Fix};
 use super::jet::Jet;
 use super::peak::theta;
-use super::stretch::{Stretch, Touch};
+use super::stretch::{Law, Stretch, Touch};
 use crate::contact::Chart;
 use crate::geometry::Vec2;
 use crate::number::{Algebraic, Rat};
@@ -126,13 +126,14 @@ impl<'a> Part<'a> {
         Some(x.clamp(&a.join(&z)))
     }
 
-    /// The balance over an enclosed variable, to n orders, not yet divided.
-    fn terms(&self, x: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Terms> {
+    /// The balance over an enclosed variable, to n orders of a parameter in which the variable
+    /// moves by `pace`, not yet divided.
+    fn terms(&self, x: &Fix, pace: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Terms> {
         let s = self.stretch;
         let constant = |f: Fix| Jet::constant(f, n, b);
         let rat = |r: &Rat| constant(b.rat(r));
         let pair = |v: &Vec2| [b.rat(&v.x), b.rat(&v.y)];
-        let var = Jet::variable(x.clone(), n, b);
+        let var = Jet::moving(x.clone(), pace.clone(), n, b);
         let (place, still) = if s.still() {
             let (lo, hi) = s.x[0].enclosure(b.0 as u32);
             (constant(b.hull(&lo, &hi)), true)
@@ -223,9 +224,31 @@ impl<'a> Part<'a> {
 
     /// The loads over an enclosed variable, to n orders; None where the balance may be singular.
     pub(super) fn load(&self, x: &Fix, rig: &Rig, n: usize, b: Bits) -> Option<Load> {
+        self.load_at(x, &b.int(1), rig, n, b)
+    }
+
+    /// As [`Part::load`], in a parameter in which the variable moves by `pace`: on a cell of half
+    /// width `pace` the orders are then the terms of its Taylor sum, and none grows past what
+    /// fixed-point numbers hold.
+    pub(super) fn load_at(
+        &self,
+        x: &Fix,
+        pace: &Fix,
+        rig: &Rig,
+        n: usize,
+        b: Bits,
+    ) -> Option<Load> {
+        let t = self.terms(x, pace, rig, n, b)?;
+        let scale = t
+            .spring
+            .scale(&b.int(i64::from(self.stretch.side)))
+            .div(&t.den)?;
+        self.divided(t, scale, b)
+    }
+
+    /// The loads with the size of the push given.
+    fn divided(&self, t: Terms, scale: Jet, b: Bits) -> Option<Load> {
         let s = self.stretch;
-        let t = self.terms(x, rig, n, b)?;
-        let scale = t.spring.scale(&b.int(i64::from(s.side))).div(&t.den)?;
         let force = t.way.each_ref().map(|w| scale.mul(w));
         let [vx, vy] = [b.rat(&s.velocity.x), b.rat(&s.velocity.y)];
         let power = force[0].scale(&vx).add(&force[1].scale(&vy)).neg();
@@ -247,7 +270,7 @@ impl<'a> Part<'a> {
     /// torque either way; None where the load may grow that way. The factor in front is never
     /// negative, so the way of the force decides.
     pub(super) fn tops(&self, x: &Fix, rig: &Rig, b: Bits) -> Option<[Option<Rat>; 4]> {
-        let t = self.terms(x, rig, 1, b)?;
+        let t = self.terms(x, &b.int(1), rig, 1, b)?;
         let v = &self.stretch.velocity;
         let [wx, wy] = t.way.each_ref().map(|w| w.order(0));
         let along = wx.mul(&b.rat(&v.x)).add(&wy.mul(&b.rat(&v.y)));
@@ -259,6 +282,56 @@ impl<'a> Part<'a> {
             top(moment.hi(), spring.hi()),
             top(-moment.lo(), -spring.lo()),
         ])
+    }
+
+    /// Whether at an end the pawl is at rest and the balance's denominator vanishes too, exactly:
+    /// the contact begins, or ends, on the edge of its sticking cone.
+    fn balances(&self, late: bool, rig: &Rig) -> bool {
+        let s = self.stretch;
+        let zero = Rat::zero();
+        let Law::Graph {
+            turn,
+            rise,
+            epsilon,
+            ..
+        } = &s.law
+        else {
+            return false;
+        };
+        let rub = &rig.mu * &Rat::from(i64::from(epsilon * self.drag));
+        s.half_turn == 0
+            && self.ends[usize::from(late)].sign() == 0
+            && (turn.eval(&zero).abs() + rise.eval(&zero) * rub).is_zero()
+    }
+
+    /// The loads over the sliver between an end at which θ and the balance's denominator both
+    /// vanish and a place near it: by Cauchy's mean value theorem their quotient is that of their
+    /// slopes somewhere between. None where they do not both vanish, or the slopes do not tell.
+    pub(super) fn sliver(&self, late: bool, place: &Fix, rig: &Rig, b: Bits) -> Option<Load> {
+        if !self.balances(late, rig) {
+            return None;
+        }
+        let x = self.end(late, b).join(place);
+        let t = self.terms(&x, &b.int(1), rig, 2, b)?;
+        let side = b.int(i64::from(self.stretch.side));
+        let push = t.spring.order(1).mul(&side).div(&t.den.order(1))?;
+        self.divided(t, Jet::constant(push, 1, b), b)
+    }
+
+    /// Whether the work grows past every bound towards an end at which the contact force does: the
+    /// spring is wound there, the push resists, and the clock runs.
+    pub(super) fn diverges(&self, end: &Fix, rig: &Rig, b: Bits) -> bool {
+        let Some(t) = self.terms(end, &b.int(1), rig, 2, b) else {
+            return false;
+        };
+        let v = &self.stretch.velocity;
+        let [wx, wy] = t.way.each_ref().map(|w| w.order(0));
+        let along = wx.mul(&b.rat(&v.x)).add(&wy.mul(&b.rat(&v.y)));
+        let apart = |f: &Fix| f.sign().is_some_and(|s| s != 0);
+        t.den.order(0).sign().is_none_or(|s| s == 0)
+            && apart(&t.spring.order(0))
+            && along.hi().sign() < 0
+            && apart(&t.clock.order(1))
     }
 
     /// θ over an enclosed variable.

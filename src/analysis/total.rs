@@ -4,16 +4,18 @@
 //! circle is cut into arcs. An exact motion in the middle of an arc says what to prove and about
 //! when; the proof for the whole arc is that of `cells`, which follows every successor in
 //! certified intervals. An arc that resists is halved, down to a bound on depth and time. One exact
-//! way out settles the question at once: the class is then `none`.
+//! way out settles the class, which is then `none`; what the rest of the circle does is told all
+//! the same ([`super::pieces`]).
 
-use super::classify::{Verdict, direction};
+use super::classify::{Direction, Verdict, direction};
 use super::escape::{Ground, Start};
 use super::field::{Directions, Field, Grain, Model};
 use crate::geometry::Vec2;
-use crate::motion::OutcomeKind;
+use crate::motion::{EventKind, OutcomeKind};
 use crate::number::{Int, Rat};
 use crate::scene::Scene;
 use crate::slice::Time;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// An arc of directions: from the quarter-turn `quarter` on, tan(φ/2) from `from` to `to`, in
 /// [0, 1].
@@ -25,8 +27,9 @@ pub struct Arc {
     pub from: Rat,
     /// End.
     pub to: Rat,
-    /// What is proven of every direction of the arc: blocked at least so firmly. None where nothing
-    /// is.
+    /// What is proven of every direction of the arc: blocked at least so firmly. `Verdict::None`
+    /// claims nothing: every direction of the arc that was tried gets out. None where nothing is
+    /// known.
     pub verdict: Option<Verdict>,
     /// How the exact motion in its middle ends, and by which pawl.
     pub middle: Option<(OutcomeKind, Option<usize>)>,
@@ -41,6 +44,8 @@ pub struct Sample {
     pub s: Rat,
     /// How firmly it is blocked.
     pub verdict: Verdict,
+    /// What its motion meets, contact by contact: two motions alike in this differ in times only.
+    pub(super) course: u64,
 }
 
 /// Where the exact verdict changes: between two directions 2⁻⁶⁰ apart at most.
@@ -54,6 +59,16 @@ pub struct Flip {
 }
 
 impl Arc {
+    /// A quarter of the circle, of which nothing is known.
+    fn whole(quarter: u8) -> Arc {
+        Arc {
+            quarter,
+            from: Rat::zero(),
+            to: Rat::one(),
+            verdict: None,
+            middle: None,
+        }
+    }
     /// The unit vector at position s of a quarter.
     pub fn unit(quarter: u8, s: &Rat) -> Vec2 {
         let (one, s2) = (Rat::one(), s.square());
@@ -96,7 +111,7 @@ impl Arc {
 pub struct Total {
     /// The weakest verdict met; None if time ran out before any.
     pub class: Option<Verdict>,
-    /// The arcs, in order round the circle. Empty where a way out was found.
+    /// The arcs, in order round the circle.
     pub cover: Vec<Arc>,
     /// A direction that gets out.
     pub escape: Option<Vec2>,
@@ -155,8 +170,9 @@ const MOST_SAMPLES: usize = 20_000;
 /// How often an arc may be halved: a quarter's 2⁻¹⁶ is about 10⁻⁵ radians.
 const DEPTH: u32 = 16;
 
-/// Decides every direction. `known` are verdicts already met on single directions.
-pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Total {
+/// Decides every direction. `family` are directions to look at first: they run as far as all
+/// others here, however short the way was over which they were decided before.
+pub fn total(ground: &Ground<'_>, start: &Start, family: &[Vec2]) -> Total {
     let scene = ground.scene;
     let asked = scene
         .classify
@@ -171,21 +187,32 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         distance: (&distance * &unit).interval().lo,
         field: Field::new(ground, start, &unit),
         unit,
-        weakest: known,
+        weakest: None,
         cover: Vec::new(),
         escape: None,
         samples: Vec::new(),
+        flips: Vec::new(),
     };
-    search.run();
+    search.run(family);
+    if search.escape.is_some() {
+        search.pieces();
+    }
+    if search.cover.is_empty() {
+        // The time was up before any proof.
+        search.cover = (0..4).map(Arc::whole).collect();
+    }
     search
         .samples
         .sort_by(|a, b| (a.quarter, &a.s).cmp(&(b.quarter, &b.s)));
     search
         .samples
         .dedup_by(|a, b| (a.quarter, &a.s) == (b.quarter, &b.s));
-    let flips = search.flips();
+    if search.escape.is_none() {
+        search.between_samples();
+    }
     let class = search.weakest;
     let escape = search.escape;
+    // Nothing is weaker than a way out.
     let undecided_width = search
         .cover
         .iter()
@@ -196,23 +223,33 @@ pub fn total(ground: &Ground<'_>, start: &Start, known: Option<Verdict>) -> Tota
         class,
         cover: search.cover,
         escape,
-        flips,
+        flips: search.flips,
         samples: search.samples,
         distance,
         undecided_width,
     }
 }
 
-/// How many flips are isolated, and the most pairs of pawl and obstacle corners of a scene whose
-/// flips are looked for beside a way out.
-const FLIPS: usize = 32;
-const SMALL: usize = 1000;
+/// How many flips are isolated.
+pub(super) const FLIPS: usize = 32;
 
 /// The verdict of a direction, the time at which it is blocked, how and by whom.
-type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
+pub(super) type Met = (Verdict, f64, (OutcomeKind, Option<usize>));
+
+/// The events of a direction's motion with their contacts, in order, without their times.
+fn course(d: &Direction) -> u64 {
+    let mut hash = DefaultHasher::new();
+    for pawl in &d.run.pawls {
+        for e in pawl.events.iter().filter(|e| e.kind != EventKind::Graze) {
+            (e.kind, &e.contacts).hash(&mut hash);
+        }
+        u8::MAX.hash(&mut hash);
+    }
+    hash.finish()
+}
 
 /// The fraction with the least denominator strictly between 0 ≤ a < b (None: no upper end).
-fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
+pub(super) fn simplest(a: &Rat, b: Option<&Rat>) -> Rat {
     let whole = Rat::from(a.numer().div_rem_floor(a.denom()).0);
     let next = &whole + &Rat::one();
     match b {
@@ -248,29 +285,29 @@ fn short_direction(quarter: u8, from: &Rat, to: &Rat) -> Vec2 {
     }
 }
 
-struct Search<'a> {
-    ground: &'a Ground<'a>,
-    start: &'a Start,
-    distance2: Rat,
+pub(super) struct Search<'a> {
+    pub(super) ground: &'a Ground<'a>,
+    pub(super) start: &'a Start,
+    pub(super) distance2: Rat,
     /// In the field's unit, as all double times here.
     distance: f64,
     unit: Rat,
-    field: Field,
-    weakest: Option<Verdict>,
-    cover: Vec<Arc>,
-    escape: Option<Vec2>,
-    samples: Vec<Sample>,
+    pub(super) field: Field,
+    pub(super) weakest: Option<Verdict>,
+    pub(super) cover: Vec<Arc>,
+    pub(super) escape: Option<Vec2>,
+    pub(super) samples: Vec<Sample>,
+    pub(super) flips: Vec<Flip>,
 }
 
 impl Search<'_> {
-    fn run(&mut self) {
+    fn run(&mut self, family: &[Vec2]) {
         // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
         let samples = 8;
-        let small = self.pairs() <= SMALL;
         for quarter in 0..4 {
             for k in 0..samples {
                 let s = Rat::frac(k, samples);
-                if self.sample(quarter, &s).is_none() && (!small || self.escape.is_none()) {
+                if self.tried(quarter, &s).is_none() {
                     return;
                 }
             }
@@ -278,25 +315,23 @@ impl Search<'_> {
         if self.escape.is_some() {
             return;
         }
-        for w in self.edges() {
+        for w in family.iter().cloned().chain(self.edges()) {
+            if self.ground.late() {
+                return;
+            }
             let d = direction(self.ground, self.start, &w, &self.distance2, false);
-            if d.verdict == Verdict::None && !d.open {
-                self.weakest = Some(Verdict::None);
+            if d.open {
+                continue;
+            }
+            self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+            if d.verdict == Verdict::None {
                 self.escape = Some(w);
                 return;
             }
         }
         for quarter in 0..4 {
-            let whole = Arc {
-                quarter,
-                from: Rat::zero(),
-                to: Rat::one(),
-                verdict: None,
-                middle: None,
-            };
-            self.cover(whole, 0);
+            self.cover(Arc::whole(quarter), 0);
             if self.escape.is_some() {
-                self.cover.clear();
                 return;
             }
         }
@@ -318,20 +353,10 @@ impl Search<'_> {
                 self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
                 if d.verdict == Verdict::None {
                     self.escape = Some(w);
-                    self.cover.clear();
                     return;
                 }
             }
         }
-    }
-
-    /// Pairs of corners of pawls and obstacles: how large the scene is.
-    fn pairs(&self) -> usize {
-        let scene = self.ground.scene;
-        let mine: usize = scene.pawls.iter().map(|p| p.vertices.len()).sum();
-        let holes = |o: &crate::scene::Obstacle| o.holes.iter().map(Vec::len).sum::<usize>();
-        let theirs = scene.obstacles.iter().map(|o| o.vertices.len() + holes(o));
-        mine * theirs.sum::<usize>()
     }
 
     /// The directions along the obstacles' edges, both ways.
@@ -352,9 +377,7 @@ impl Search<'_> {
     }
 
     /// Isolates the flips between neighbouring samples.
-    fn flips(&mut self) -> Vec<Flip> {
-        let width = Rat::from(2).pow(60).recip();
-        let mut out = Vec::new();
+    fn between_samples(&mut self) {
         let n = self.samples.len();
         for i in 0..n {
             let (a, b) = (self.samples[i].clone(), self.samples[(i + 1) % n].clone());
@@ -364,74 +387,98 @@ impl Search<'_> {
                 1 if b.s.is_zero() => Rat::one(),
                 _ => continue,
             };
-            if a.verdict == b.verdict || out.len() >= FLIPS {
-                continue;
-            }
-            let (mut low, mut high) = (
-                a.clone(),
-                Sample {
-                    quarter: a.quarter,
+            if a.verdict != b.verdict && self.flips.len() < FLIPS {
+                let quarter = a.quarter;
+                let high = Sample {
+                    quarter,
                     s: end,
                     ..b
-                },
-            );
-            while &high.s - &low.s > width {
-                let s = Rat::midpoint(&low.s, &high.s);
-                let w = Arc::unit(low.quarter, &s);
-                let d = direction(self.ground, self.start, &w, &self.distance2, false);
-                if d.open || self.ground.late() {
-                    break;
-                }
-                let mid = Sample {
-                    quarter: low.quarter,
-                    s,
-                    verdict: d.verdict,
                 };
-                if mid.verdict == low.verdict {
-                    low = mid;
-                } else {
-                    high = mid;
-                }
+                let flip = self.isolate(a, high);
+                self.flips.push(flip);
             }
-            let w = short_direction(low.quarter, &low.s, &high.s);
-            let short = w.x.denom().bits() + w.y.numer().bits() < 48
-                && w.x.numer().bits() + w.y.denom().bits() < 48;
-            let critical = short.then(|| {
-                let d = direction(self.ground, self.start, &w, &self.distance2, false);
-                (w, d.verdict)
-            });
-            out.push(Flip {
-                sides: [low, high],
-                critical,
-            });
         }
-        out
+    }
+
+    /// Two directions of one quarter with different verdicts, brought together: what the later
+    /// one's verdict is may change on the way.
+    pub(super) fn isolate(&self, mut low: Sample, mut high: Sample) -> Flip {
+        let width = Rat::from(2).pow(60).recip();
+        while &high.s - &low.s > width {
+            let s = Rat::midpoint(&low.s, &high.s);
+            let w = Arc::unit(low.quarter, &s);
+            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            if d.open || self.ground.late() {
+                break;
+            }
+            let mid = Sample {
+                quarter: low.quarter,
+                s,
+                verdict: d.verdict,
+                course: course(&d),
+            };
+            if mid.verdict == low.verdict {
+                low = mid;
+            } else {
+                high = mid;
+            }
+        }
+        let few = |w: &Vec2| {
+            let bits = [&w.x, &w.y].map(|c| (c.numer().bits(), c.denom().bits()));
+            bits[0].1 + bits[1].0 < 48 && bits[0].0 + bits[1].1 < 48
+        };
+        let between = short_direction(low.quarter, &low.s, &high.s);
+        // Else one of the sides is, at the end of a quarter.
+        let sides = [&low, &high].map(|k| (Arc::unit(k.quarter, &k.s), k.verdict));
+        let critical = if few(&between) {
+            let d = direction(self.ground, self.start, &between, &self.distance2, false);
+            Some((between, d.verdict))
+        } else {
+            sides.into_iter().find(|(w, _)| few(w))
+        };
+        Flip {
+            sides: [low, high],
+            critical,
+        }
     }
 
     /// The verdict of one direction with the time at which it is blocked; None if it gets out, or
     /// the time is up.
     fn sample(&mut self, quarter: u8, s: &Rat) -> Option<Met> {
+        let met = self.tried(quarter, s)?;
+        match (met.0, met.2.0) {
+            (Verdict::None, OutcomeKind::Completed) => None,
+            _ => Some(met),
+        }
+    }
+
+    /// How one direction fares; None where the time is up. What is not blocked and does not run
+    /// its length either is open.
+    pub(super) fn tried(&mut self, quarter: u8, s: &Rat) -> Option<Met> {
         if self.ground.late() {
             return None;
         }
         let w = Arc::unit(quarter, s);
         let d = direction(self.ground, self.start, &w, &self.distance2, false);
+        let end = (d.run.outcome.kind, d.run.outcome.pawl);
         if d.open {
-            return Some((
-                Verdict::None,
-                self.distance,
-                (d.run.outcome.kind, d.run.outcome.pawl),
-            ));
+            // A force that cannot be told from the limit is open as well.
+            let kind = match end.0 {
+                OutcomeKind::Completed => OutcomeKind::Undecided,
+                kind => kind,
+            };
+            return Some((Verdict::None, self.distance, (kind, end.1)));
         }
         self.samples.push(Sample {
             quarter,
             s: s.clone(),
             verdict: d.verdict,
+            course: course(&d),
         });
         self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
         if d.verdict == Verdict::None {
             self.escape.get_or_insert(w);
-            return None;
+            return Some((Verdict::None, self.distance, end));
         }
         let time = match (&d.peak, d.verdict) {
             (Some((p, _)), Verdict::Force) => match &p.when {
@@ -440,7 +487,7 @@ impl Search<'_> {
             },
             _ => self.in_unit(&d.run.outcome.time),
         };
-        Some((d.verdict, time, (d.run.outcome.kind, d.run.outcome.pawl)))
+        Some((d.verdict, time, end))
     }
 
     /// An instant of a motion at unit speed, rounded up.
@@ -486,7 +533,13 @@ impl Search<'_> {
     }
 
     /// Tries to prove the arc blocked, as firmly as its middle is or else as the class needs.
-    fn prove(&self, arc: &Arc, verdict: Verdict, time: f64, depth: u32) -> Option<Verdict> {
+    pub(super) fn prove(
+        &self,
+        arc: &Arc,
+        verdict: Verdict,
+        time: f64,
+        depth: u32,
+    ) -> Option<Verdict> {
         let w = arc.directions();
         let scale = self.field.reach();
         // Lateral uncertainty at the time of blocking, and slabs to match.

@@ -3,9 +3,9 @@
 //! Peaks of single contacts come from [`super::peak`], those of the root, where the pawls add up,
 //! from [`super::drive`]; here they are put together and written down.
 
-use super::bound::Bound;
+use super::bound::{Bound, Unbounded};
 use super::document::contact;
-use super::drive::{Extremes, Slide, extremes, instant, trace, work};
+use super::drive::{Extremes, Slide, Work, extremes, instant, trace, work};
 use super::escape::Ground;
 use super::fix::Bits;
 use super::force_document::{
@@ -20,6 +20,7 @@ use super::stretch::{Stretch, stretches};
 use crate::motion::{OutcomeKind, Trajectory};
 use crate::number::{Algebraic, Rat};
 use crate::report::Num;
+use crate::report::words::{equals, short};
 use crate::scene::{Motion, Scene};
 use crate::slice::Time;
 use std::cell::RefCell;
@@ -267,15 +268,24 @@ impl<'a> Way<'a> {
                 Some(Peak::Within(_, hi)) => Some(hi),
                 _ => None,
             };
+            let grows = p.as_ref().is_some_and(|p| p.peak == Peak::Unbounded);
+            let unbounded = grows && rig.mu.sign() > 0;
             for part in Part::cut(s, rig.mu.sign() > 0) {
                 out.push(Slide {
                     part,
                     rig,
                     bound: bound.clone(),
+                    unbounded,
                 });
             }
         }
         out
+    }
+
+    /// The largest resistance of a phase.
+    pub(super) fn resistance(&self, k: usize) -> Peak {
+        let stop = || self.ground.late();
+        extremes(&self.slides(k, false), self.goal, &stop).resistance
     }
 
     pub(super) fn phase(&self, k: usize, drawing: &mut Drawing) -> PhaseForces {
@@ -305,15 +315,18 @@ impl<'a> Way<'a> {
         };
         let without =
             (rubs && wish.root && wish.smooth).then(|| extremes(&smooth, self.goal, &stop));
-        let spent = |slides: &[Slide<'_>]| {
-            slides
-                .iter()
-                .try_fold([Rat::zero(), Rat::zero()], |sum, s| {
-                    let [lo, hi] = work(s, self.goal, &stop)?;
-                    Some([&sum[0] + &lo, &sum[1] + &hi])
-                })
-        };
         let bound = |w: [Rat; 2]| Bound::within(&w[0], &w[1], digits);
+        let spent = |slides: &[Slide<'_>]| {
+            let each = slides.iter().map(|s| work(s, self.goal, &stop));
+            each.fold(Work::zero(), Work::plus)
+        };
+        let done = wish.work.then(|| spent(&rubbed));
+        let work_note = done.as_ref().and_then(|w| self.work_note(k, w));
+        let written = |w: Work| match w {
+            Work::Within(w) => Some(bound(w)),
+            Work::Unbounded(_) => Some(Bound::Unbounded(Unbounded::Unbounded)),
+            Work::Open => None,
+        };
         if self.wish.draw {
             drawing.phases.push(self.drawn(k, &rubbed, &smooth));
         }
@@ -328,12 +341,27 @@ impl<'a> Way<'a> {
             ],
             peak: high.map(|e| self.root_peak(k, &e)),
             peak_without_friction: without.map(|e| self.root_peak(k, &e)),
-            work: wish.work.then(|| spent(&rubbed).map(bound)).flatten(),
+            work: done.and_then(written),
+            work_note,
             work_without_friction: (rubs && wish.work && wish.smooth)
-                .then(|| spent(&smooth).map(bound))
-                .flatten(),
+                .then(|| spent(&smooth))
+                .and_then(written),
             lost_in_snaps: wish.work.then(|| bound(self.lost(k))),
             history: self.history(k, &rubbed, &smooth),
+        }
+    }
+
+    /// Why the work of a phase has no bound, or is not told.
+    fn work_note(&self, k: usize, w: &Work) -> Option<String> {
+        match w {
+            Work::Within(_) => None,
+            Work::Unbounded(t) => Some(format!(
+                "the work grows past every bound towards t {}: there the contact reaches the \
+                 edge of its sticking cone with the spring wound, the force grows like one over \
+                 the distance left, and so the work like its logarithm",
+                equals(&self.clock(k, t))
+            )),
+            Work::Open => Some("not settled within the search's budget or the time".to_owned()),
         }
     }
 
@@ -376,6 +404,9 @@ impl<'a> Way<'a> {
             Some(t) => t.clone(),
             None => phase.to.exact().enclosure(64).0,
         };
+        if length.is_zero() {
+            return Vec::new();
+        }
         let n = i64::from(self.wish.samples);
         (1..=n)
             .filter_map(|i| {
@@ -422,9 +453,9 @@ impl<'a> Way<'a> {
         });
         DrawnPhase {
             name: format!(
-                "velocity ({}, {}){}",
-                phase.velocity.x,
-                phase.velocity.y,
+                "root moved by ({}, {}){}",
+                short(&Num::of_rat(&phase.velocity.x)),
+                short(&Num::of_rat(&phase.velocity.y)),
                 if end.phase == k && end.kind != OutcomeKind::Completed {
                     format!(", {}", end.kind.name())
                 } else {

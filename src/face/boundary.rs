@@ -62,6 +62,9 @@ pub(crate) struct Strip<'a> {
     pub(crate) glue: &'a [Glue],
     /// For each upright of an arc whether it is the other side of the one before it, a level on the cut.
     pub(crate) second: &'a [bool],
+    /// For each graph, then each upright, names of its ends: equal ones over one number are one point. May be
+    /// shorter.
+    pub(crate) names: &'a [[u64; 2]],
 }
 
 /// How a face is to be found.
@@ -102,6 +105,9 @@ pub(crate) fn boundary(
         for (i, arc) in strip.uprights.iter().enumerate() {
             let i = strip.graphs.len() + i;
             items.push(upright(&mut k, arc, i).map_err(bad(i))?);
+        }
+        for (item, names) in items.iter().zip(strip.names) {
+            k.name_ends(item, *names);
         }
         let start = Point {
             x: k.rational(&start.0),

@@ -7,6 +7,7 @@
 use super::approx::{Approx, horner};
 use super::isolate::{Roots, bernstein, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
+use crate::number::filter::{self, Stage};
 use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
@@ -168,8 +169,20 @@ impl Kernel {
 
     #[cold]
     fn cmp_at_near(&mut self, c: CurveId, d: CurveId, x: NumId) -> Ordering {
-        self.stats.heights_exact += 1;
         let root = self.find(x);
+        if self.places.alike(root, c, d) || self.places.alike(x, c, d) {
+            filter::settled(Stage::Name);
+            return Ordering::Equal;
+        }
+        let order = self.cmp_at_exactly(c, d, x, root);
+        if order.is_eq() {
+            self.places.unite(root, c, d);
+        }
+        order
+    }
+
+    fn cmp_at_exactly(&mut self, c: CurveId, d: CurveId, x: NumId, root: NumId) -> Ordering {
+        self.stats.heights_exact += 1;
         for id in [x, root] {
             if let Def::Cross(a, b) = self.nums[id as usize].def
                 && ((a, b) == (c, d) || (a, b) == (d, c))
@@ -305,18 +318,10 @@ impl Kernel {
         if matches!((self.slope(c, x) - self.slope(d, x)).sign(), Some(-1 | 1)) {
             return 1;
         }
-        let (Some(m), Some(mut h)) = (self.equation(x), self.diff_small(c, d)) else {
+        let (Some(m), Some(h)) = (self.equation(x), self.diff_small(c, d)) else {
             return 1;
         };
-        let mut order = 1;
-        while order < 4 {
-            match derivative_of(&h) {
-                Some(next) if next != [0; 5] && vanishes(&next, &m) == Some(true) => h = next,
-                _ => break,
-            }
-            order += 1;
-        }
-        order
+        further_multiplicity(h, &m)
     }
 
     /// P₁Q₂ − P₂Q₁, whatever the denominators.
@@ -419,7 +424,69 @@ impl Kernel {
             out.push(x);
             return;
         }
-        self.all_crossings(c, d, out);
+        if !self.shared_touch((c, d), &h, (lo - margin, hi + margin), known, out) {
+            out.truncate(from);
+            self.all_crossings(c, d, out);
+        }
+    }
+
+    /// The roots of h where the two curves touch in a point in which others were seen to touch; false if they do not,
+    /// or the remaining roots are not told apart. Exact isolation is for the first pair that touches there.
+    fn shared_touch(
+        &mut self,
+        (c, d): (CurveId, CurveId),
+        h: &[Approx; 5],
+        range: (f64, f64),
+        known: &[NumId],
+        out: &mut Vec<NumId>,
+    ) -> bool {
+        let Some(exact) = self.diff_small(c, d) else {
+            return false;
+        };
+        let Some((at, order)) = (0..self.hubs.len()).rev().find_map(|i| {
+            let order = multiplicity(&exact, &self.equation(self.hubs[i])?);
+            (order >= 2).then_some((i, order))
+        }) else {
+            return false;
+        };
+        let x = self.hubs.remove(at);
+        self.hubs.push(x);
+        let (mut g, mut n) = (*h, 4);
+        while n > 0 && g[n].sign() == Some(0) {
+            n -= 1;
+        }
+        let mut others = Vec::new();
+        for &e in known {
+            if self.cmp(e, x).is_ne() {
+                others.push(e);
+            }
+        }
+        for e in others.iter().copied().chain(std::iter::repeat_n(x, order)) {
+            if n > 0 {
+                deflate(&mut g, &mut n, self.approx(e));
+            }
+        }
+        others.push(x);
+        let mut found = Roots {
+            at: [(0.0, 0.0); 4],
+            n: 0,
+        };
+        if !isolate(&g[..=n], range.0, range.1, &mut found) {
+            return false;
+        }
+        for &r in &found.at[..found.n] {
+            let clear = others.iter().all(|&e| {
+                let (a, b) = self.enclosure(e);
+                b < r.0 || r.1 < a
+            });
+            let id = clear.then(|| self.intern(c, d, h, r)).flatten();
+            match id {
+                Some(id) => out.push(id),
+                None => return false,
+            }
+        }
+        out.push(x);
+        true
     }
 
     /// The only root of h, if that is a square by its discriminant: named by its equation, so that all curves that
@@ -434,39 +501,48 @@ impl Kernel {
         }
         let m = [Int::from(h1), Int::from(h2.checked_mul(2)?), Int::zero()];
         let x = self.root(&m, 0).ok()?;
-        let pair = self.pairs.entry((c, d)).or_default();
-        pair.complete = true;
-        if !pair.ids.contains(&x) {
-            pair.ids.push(x);
+        let ids = self.complete.entry((c, d)).or_default();
+        if !ids.contains(&x) {
+            ids.push(x);
         }
         Some(x)
     }
 
     /// The name of the only root of h in an enclosure; None where it may be confused with another.
     fn intern(&mut self, c: CurveId, d: CurveId, h: &[Approx; 5], r: (f64, f64)) -> Option<NumId> {
-        if let Some(pair) = self.pairs.get(&(c, d)) {
-            for &id in &pair.ids {
-                let n = &self.nums[id as usize];
-                if n.hi < r.0 || r.1 < n.lo {
-                    continue;
-                }
-                let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
-                let steep = [
-                    h[1],
-                    two(h[2]),
-                    h[3] * Approx::exact(3.0),
-                    h[4] * Approx::exact(4.0),
-                ];
-                // Monotone on both: one root.
-                return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+        for id in self.interned((c, d)) {
+            let n = &self.nums[id as usize];
+            if n.hi < r.0 || r.1 < n.lo {
+                continue;
             }
-            if pair.complete {
-                return None;
-            }
+            let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
+            let steep = [
+                h[1],
+                two(h[2]),
+                h[3] * Approx::exact(3.0),
+                h[4] * Approx::exact(4.0),
+            ];
+            // Monotone on both: one root.
+            return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+        }
+        if self.complete.contains_key(&(c, d)) {
+            return None;
         }
         let id = self.add(r.0, r.1, Def::Cross(c, d));
-        self.pairs.entry((c, d)).or_default().ids.push(id);
+        let before = self.pairs.insert((c, d), id);
+        self.next_cross.resize(id as usize, NumId::MAX);
+        self.next_cross.push(before.unwrap_or(NumId::MAX));
         Some(id)
+    }
+
+    /// The crossings of a pair that have names.
+    fn interned(&self, pair: (CurveId, CurveId)) -> impl Iterator<Item = NumId> + '_ {
+        let first = self.pairs.get(&pair).copied();
+        let next = |x: &NumId| self.next_cross.get(*x as usize).copied();
+        let one_by_one =
+            std::iter::successors(first, move |x| next(x).filter(|&y| y != NumId::MAX));
+        let at_once = self.complete.get(&pair).into_iter().flatten().copied();
+        one_by_one.chain(at_once)
     }
 
     /// The double roots of h, if it has any and none of a higher order, and what is left of h without them. They
@@ -481,21 +557,22 @@ impl Kernel {
         for k in 0..n as u8 {
             ids.extend(self.root(&m, k).ok());
         }
+        for &x in &ids {
+            self.add_hub(x);
+        }
         Some((rest, ids))
     }
 
     /// All real roots of h, exactly.
     #[cold]
     fn all_crossings(&mut self, c: CurveId, d: CurveId, out: &mut Vec<NumId>) {
-        let pair = self.pairs.entry((c, d)).or_default();
-        if !pair.complete {
-            pair.complete = true;
-            let before = pair.ids.clone();
+        if !self.complete.contains_key(&(c, d)) {
+            let before: Vec<NumId> = self.interned((c, d)).collect();
+            let mut ids = Vec::new();
             self.stats.pairs_exact += 1;
             let mut h = self.diff_poly(c, d);
             if let Some((rest, multiple)) = self.multiple_roots(&h) {
                 h = rest;
-                let ids = &mut self.pairs.entry((c, d)).or_default().ids;
                 ids.extend(multiple);
             }
             for r in h.real_roots() {
@@ -510,11 +587,12 @@ impl Kernel {
                 if same.is_none() {
                     let id = self.add(i.lo, i.hi, Def::Cross(c, d));
                     self.settle_value(id, r);
-                    self.pairs.entry((c, d)).or_default().ids.push(id);
+                    ids.push(id);
                 }
             }
+            self.complete.insert((c, d), ids);
         }
-        out.extend(self.pairs.get(&(c, d)).into_iter().flat_map(|p| &p.ids));
+        out.extend(self.interned((c, d)));
     }
 }
 
@@ -561,6 +639,28 @@ fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {
         out[k - 1] = h[k].checked_mul(k as i128)?;
     }
     Some(out)
+}
+
+/// How often h vanishes at the roots of m, as far as machine words tell and never said to be more than it is.
+fn multiplicity(h: &[i128; 5], m: &[i64; 3]) -> usize {
+    if vanishes(h, m) == Some(true) {
+        further_multiplicity(*h, m)
+    } else {
+        0
+    }
+}
+
+/// The same for an h that is known to vanish there.
+fn further_multiplicity(mut h: [i128; 5], m: &[i64; 3]) -> usize {
+    let mut order = 1;
+    while order < 4 {
+        match derivative_of(&h) {
+            Some(next) if next != [0; 5] && vanishes(&next, m) == Some(true) => h = next,
+            _ => break,
+        }
+        order += 1;
+    }
+    order
 }
 
 #[inline]

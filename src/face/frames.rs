@@ -5,6 +5,8 @@
 //! with ξ between: h(a) is computed exactly, once, in integers, and the slope with error bounds over the
 //! enclosure that holds x and a. That takes a few long products a number, where an isolation takes
 //! hundreds. One point, a *frame*, serves a whole cluster; it comes from the first number that had a neighbour.
+//! For a crossing h(a) comes from doubles too: how far its two curves are from a third one at a, exactly and once a
+//! curve, is known with all digits however near one another all of them are.
 //! The second level is for numbers that even the first frame does not tell apart.
 
 use super::approx::{Approx, horner};
@@ -21,7 +23,12 @@ pub(super) struct Frame {
     /// It lies in [lo, hi].
     lo: f64,
     hi: f64,
+    /// The curve from which others are seen there: the first that came.
+    reference: Option<CurveId>,
 }
+
+/// A difference of two curves is taken from doubles if its error is at most so large a part of it.
+const SHARP: f64 = 1.0 / (1u64 << 32) as f64;
 
 /// How many bits after the point the frames of each level have.
 const LEVELS: [u32; 2] = [320, 1280];
@@ -29,13 +36,6 @@ const LEVELS: [u32; 2] = [320, 1280];
 impl Kernel {
     /// The order of two numbers by frames of a level; None where these do not tell (equal numbers, above all).
     pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId, level: usize) -> Option<Ordering> {
-        // Those that were asked about before mostly are in one frame.
-        if let (Some(&(f, a)), Some(&(g, b))) = (self.local.get(&x), self.local.get(&y))
-            && f == g
-            && let Some(o) = apart(a, b)
-        {
-            return Some(o);
-        }
         for id in [x, y] {
             if let Some(&(f, _)) = self.local.get(&id)
                 && self.frames[f as usize].bits > u64::from(LEVELS[level])
@@ -44,7 +44,14 @@ impl Kernel {
             }
         }
         let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
-        let old = self.frame_near.get(&key).copied();
+        let mut old = self.frame_near.get(&key).copied();
+        if old.is_none() {
+            // The cluster may straddle the keys.
+            old = self.frame_beside(x, y, level);
+            old.into_iter().for_each(|f| {
+                self.frame_near.insert(key, f);
+            });
+        }
         if let Some(f) = old {
             if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                 return Some(o);
@@ -57,6 +64,25 @@ impl Kernel {
         let f = self.new_frame(x, LEVELS[level]);
         self.frame_near.insert(key, f);
         self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+    }
+
+    /// The last frame made, if that is of this level and lies about as near to two numbers as they are known.
+    fn frame_beside(&self, x: NumId, y: NumId, level: usize) -> Option<u32> {
+        let (x, y) = (self.enclosure(x), self.enclosure(y));
+        let (lo, hi) = (x.0.min(y.0), x.1.max(y.1));
+        let room = hi - lo;
+        let last = self.frames.last()?;
+        let near =
+            last.bits == u64::from(LEVELS[level]) && last.lo <= hi + room && lo - room <= last.hi;
+        near.then(|| self.frames.len() as u32 - 1)
+    }
+
+    /// The order of two numbers that were asked about before, which mostly are in one frame.
+    pub(super) fn framed_apart(&self, x: NumId, y: NumId) -> Option<Ordering> {
+        match (self.local.get(&x), self.local.get(&y)) {
+            (Some(&(f, a)), Some(&(g, b))) if f == g => apart(a, b),
+            _ => None,
+        }
     }
 
     /// Equal, if both are proven to be the number that a frame was made for, whose equation is known if it has one
@@ -88,6 +114,7 @@ impl Kernel {
 
     fn new_frame(&mut self, x: NumId, bits: u32) -> u32 {
         let (lo, _) = self.exact(x).enclosure(bits);
+        self.add_hub(x);
         let bits = u64::from(bits);
         let at = lo.numer().shl(bits).div_rem_floor(lo.denom()).0;
         let i = Rat::new(at.clone(), Int::one().shl(bits)).interval();
@@ -97,6 +124,7 @@ impl Kernel {
             bits,
             lo: i.lo,
             hi: i.hi,
+            reference: None,
         });
         self.frames.len() as u32 - 1
     }
@@ -122,35 +150,81 @@ impl Kernel {
                 (value, h)
             }
             Def::Cross(c, d) => {
-                for curve in [c, d] {
-                    self.curve_at_frame(curve, f);
-                }
-                let (p, q) = &self.framed[&(c, f)];
-                let (r, s) = &self.framed[&(d, f)];
-                let value = p * s - r * q;
-                let bits = self.frames[f as usize].bits;
-                let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
-                (
-                    scaled(&value, 4 * bits + scale)?,
-                    self.full_difference(c, d),
-                )
+                let value = match self.difference_beside(c, d, f) {
+                    Some(v) => v,
+                    None => self.difference_at(c, d, f)?,
+                };
+                (value, self.full_difference(c, d))
             }
             Def::Known => return None,
         };
         let (frame, n) = (&self.frames[f as usize], &self.nums[x as usize]);
         let around = Approx::between(frame.lo.min(n.lo), frame.hi.max(n.hi));
-        let slope: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
-        let slope = horner(&slope, around);
+        let steep: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
+        let slope = horner(&steep, around);
         // One root where h is steep; it is x if anything is.
         if !matches!(slope.sign(), Some(-1 | 1)) {
             return None;
         }
-        let d = (-value).over(slope);
+        let mut d = (-value).over(slope);
+        // Now that x is known to be so near, its own enclosure, perhaps a wide one, no longer matters.
+        let reach = d.v.abs() + d.e;
+        let nearer = Approx::between((frame.lo - reach).next_down(), (frame.hi + reach).next_up());
+        let slope = horner(&steep, nearer);
+        if matches!(slope.sign(), Some(-1 | 1)) {
+            let again = (-value).over(slope);
+            if again.e < d.e {
+                d = again;
+            }
+        }
         if !(d.v.is_finite() && d.e.is_finite()) {
             return None;
         }
         self.local.insert(x, (f, d));
         Some(d)
+    }
+
+    /// h of two curves at a frame, in long integers.
+    fn difference_at(&mut self, c: CurveId, d: CurveId, f: u32) -> Option<Approx> {
+        for curve in [c, d] {
+            self.curve_at_frame(curve, f);
+        }
+        let (p, q) = &self.framed[&(c, f)];
+        let (r, s) = &self.framed[&(d, f)];
+        let value = p * s - r * q;
+        let bits = self.frames[f as usize].bits;
+        let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
+        scaled(&value, 4 * bits + scale)
+    }
+
+    /// The same in doubles, from what lies between each of the two and a third one: long products only once a
+    /// curve and not once a pair. None where the two are much nearer to each other than to that.
+    fn difference_beside(&mut self, c: CurveId, d: CurveId, f: u32) -> Option<Approx> {
+        let from = *self.frames[f as usize].reference.get_or_insert(c);
+        let [(v, q), (w, s)] = [
+            self.curve_beside(c, from, f)?,
+            self.curve_beside(d, from, f)?,
+        ];
+        // With R the denominator of the third: h(c, d)·R = h(c, from)·Q_d − h(d, from)·Q_c.
+        let (_, r) = self.curve_beside(from, from, f)?;
+        let value = (v * s - w * q).over(r);
+        (value.e <= value.v.abs() * SHARP).then_some(value)
+    }
+
+    /// h of a curve and the frame's own there, and the curve's denominator.
+    fn curve_beside(&mut self, c: CurveId, from: CurveId, f: u32) -> Option<(Approx, Approx)> {
+        if let Some(&known) = self.beside.get(&(c, f)) {
+            return known;
+        }
+        let bits = self.frames[f as usize].bits;
+        let value = self.difference_at(c, from, f);
+        let denominator = scaled(
+            &self.framed[&(c, f)].1,
+            2 * bits + self.curves[c as usize].scale,
+        );
+        let known = value.zip(denominator);
+        self.beside.insert((c, f), known);
+        known
     }
 
     /// P and Q at a frame, times 2^(2·bits).

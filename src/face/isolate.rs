@@ -22,6 +22,12 @@ pub(super) fn isolate(g: &[Approx], a: f64, b: f64, out: &mut Roots) -> bool {
     if n == 0 {
         return matches!(g[0].sign(), Some(-1 | 1));
     }
+    if n <= 2
+        && let Some(found) = closed(g, a, b)
+    {
+        *out = found;
+        return true;
+    }
     let c = bernstein(g, a, b);
     settle(
         &Whole {
@@ -35,6 +41,55 @@ pub(super) fn isolate(g: &[Approx], a: f64, b: f64, out: &mut Roots) -> bool {
         0,
         out,
     )
+}
+
+/// A root's enclosure is at most so wide, as part of its size, to be taken from the formula.
+const NARROW: f64 = 1.0 / (1u64 << 44) as f64;
+
+/// The roots near [a, b] of a polynomial of degree one or two by the formula; None where that does not tell them
+/// apart, or is rougher than a search.
+fn closed(g: &[Approx], a: f64, b: f64) -> Option<Roots> {
+    let mut roots = Roots {
+        at: [(0.0, 0.0); 4],
+        n: 0,
+    };
+    let mut take = |x: Approx| {
+        if !(x.e <= x.v.abs() * NARROW) {
+            return None;
+        }
+        let (lo, hi) = (x.lo(), x.hi());
+        if hi >= a && lo <= b {
+            // A double's own value is a narrow enough interval, but an interval must have an inside.
+            roots.at[roots.n] = (lo.next_down(), hi.next_up());
+            roots.n += 1;
+        }
+        Some(())
+    };
+    if g.len() == 2 {
+        take((-g[0]).over(g[1]))?;
+        return Some(roots);
+    }
+    let [g0, g1, g2] = [g[0], g[1], g[2]];
+    let radicand = g1 * g1 - Approx::exact(4.0) * (g0 * g2);
+    match radicand.sign()? {
+        1 => {}
+        -1 => return Some(roots),
+        _ => return None,
+    }
+    // Nothing cancels: the root grows the side that g1 has.
+    let s = radicand.sqrt();
+    let q = if g1.v > 0.0 {
+        -(g1 + s).half()
+    } else {
+        (s - g1).half()
+    };
+    let (x, y) = (q.over(g2), g0.over(q));
+    if !(x.hi().next_up() < y.lo().next_down() || y.hi().next_up() < x.lo().next_down()) {
+        return None;
+    }
+    take(x)?;
+    take(y)?;
+    Some(roots)
 }
 
 /// Whether the polynomial surely has no root in [a, b]: its value in the middle outweighs all that the other

@@ -9,6 +9,7 @@
 use super::approx::{Approx, horner};
 use super::frames::{Frame, scaled};
 use super::hash::FastMap;
+use super::places::Places;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
 
@@ -77,12 +78,6 @@ pub(super) struct Num {
     pub(super) def: Def,
 }
 
-#[derive(Default)]
-pub(super) struct PairRoots {
-    pub(super) ids: Vec<NumId>,
-    pub(super) complete: bool,
-}
-
 /// Curves, numbers and what is known about them.
 #[derive(Default)]
 pub(crate) struct Kernel {
@@ -105,9 +100,18 @@ pub(crate) struct Kernel {
     pub(super) frame_near: FastMap<(u64, usize), u32>,
     pub(super) local: FastMap<NumId, (u32, Approx)>,
     pub(super) framed: FastMap<(CurveId, u32), (Int, Int)>,
+    pub(super) beside: FastMap<(CurveId, u32), Option<(Approx, Approx)>>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
-    pub(super) pairs: FastMap<(CurveId, CurveId), PairRoots>,
+    /// The crossing of a pair that was named last, and for each the one before it: there are many of these.
+    pub(super) pairs: FastMap<(CurveId, CurveId), NumId>,
+    pub(super) next_cross: Vec<NumId>,
+    /// All others, of the few pairs whose crossings were isolated exactly.
+    pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
+    /// Numbers with equations of low degree in which several pairs were seen to meet; see `add_hub`.
+    pub(super) hubs: Vec<NumId>,
+    /// Which curves are known to meet where.
+    pub(super) places: Places,
     pub(crate) stats: Stats,
 }
 
@@ -447,7 +451,16 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
             q = b.scale(all.denom());
         }
     }
-    let content = p.content().gcd(&q.content());
+    // The shortest coefficients first: mostly two of them have no common divisor.
+    let mut coeffs: Vec<&Int> = p.coeffs().iter().chain(q.coeffs()).collect();
+    coeffs.sort_unstable_by_key(|c| c.bits());
+    let mut content = Int::zero();
+    for c in coeffs {
+        content = content.gcd(c);
+        if content.is_one() {
+            break;
+        }
+    }
     let content = if q.leading().is_some_and(|l| l.sign() < 0) {
         -content
     } else {

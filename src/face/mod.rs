@@ -29,6 +29,7 @@ mod meet;
 mod merge;
 mod numbers;
 mod pencil;
+mod places;
 mod read;
 mod region;
 mod run;

@@ -12,6 +12,9 @@ use crate::number::modular::gcd_degree_bound;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
 
+/// So many numbers are kept in mind with which others may be equal, the last ones.
+const HUBS: usize = 8;
+
 /// Bits after the point of the cached cells that tell very near numbers apart.
 const FINE: u32 = 320;
 
@@ -159,12 +162,15 @@ impl Kernel {
             return Ordering::Equal;
         }
         self.stats.numbers_exact += 1;
-        if let Some(order) = self.cells_apart(x, y) {
+        if let Some(order) = self.framed_apart(x, y).or_else(|| self.cells_apart(x, y)) {
             return order;
         }
         if self.same_root(x, y) || self.same_root(y, x) {
             self.unite(x, y);
             return Ordering::Equal;
+        }
+        if self.joins_hub(x) | self.joins_hub(y) {
+            return self.cmp(x, y);
         }
         if let Some(order) = self.cmp_in_frames(x, y, 0) {
             return order;
@@ -226,7 +232,38 @@ impl Kernel {
             })
     }
 
+    /// Keeps a number in mind with which others may be equal, if its equation is of low degree: two crossings in one
+    /// point are hard to tell to be equal, each of them and the root of such an equation are not.
+    pub(super) fn add_hub(&mut self, x: NumId) {
+        if self.equation(x).is_some() {
+            self.hubs.retain(|&h| h != x);
+            self.hubs.push(x);
+            let old = self.hubs.len().saturating_sub(HUBS);
+            self.hubs.drain(..old);
+        }
+    }
+
+    /// Unites a crossing with the hub that it is.
+    fn joins_hub(&mut self, x: NumId) -> bool {
+        let x = self.find(x);
+        let hub = self.hubs.iter().rev().copied();
+        let hub = hub.into_iter().find(|&h| h != x && self.same_root(h, x));
+        let Some(hub) = hub.map(|h| self.find(h)) else {
+            return false;
+        };
+        if hub != x {
+            self.unite(hub, x);
+        }
+        hub != x
+    }
+
     pub(super) fn unite(&mut self, x: NumId, y: NumId) {
+        // The name that all share is one with an equation, if any has one.
+        let (x, y) = if self.equation(x).is_none() && self.equation(y).is_some() {
+            (y, x)
+        } else {
+            (x, y)
+        };
         let (lo, hi) = {
             let (a, b) = (&self.nums[x as usize], &self.nums[y as usize]);
             (a.lo.max(b.lo), a.hi.min(b.hi))

@@ -103,6 +103,16 @@ impl Pencil {
         (from.next_down() <= b && a <= to.next_up()).then_some(self.count)
     }
 
+    /// The part of the axis just outside of which something may be asked again.
+    pub(super) fn crowded(&self) -> Option<(f64, f64)> {
+        let core = self.chart.core?;
+        let (from, to) = (core.middle - core.half, core.middle + core.half);
+        Some((
+            from.next_down().next_down().next_down(),
+            to.next_up().next_up().next_up(),
+        ))
+    }
+
     /// Calls `found` with the members that may meet a curve over [a, b] beside the point.
     pub(super) fn query(
         &self,

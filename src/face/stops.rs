@@ -3,7 +3,8 @@
 //! The idea: an item's range is halved into windows, lazily, until few others may meet it inside one; then all
 //! that do are found, sorted and named. So a walk that uses a short end of a long arc pays for what is near that
 //! end. The limit grows with the square of the depth: about a common point of many arcs no
-//! window is ever empty, and halving must end there too.
+//! window is ever empty, and halving must end there too. (Where many are known to pass near one another, that part
+//! is cut out and not halved.)
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
@@ -239,7 +240,13 @@ impl Tracer<'_> {
     fn open(&mut self, item: u32, w: u32, depth: usize) {
         let Window { from, to, .. } = self.windows[w as usize];
         let me = self.items[item as usize];
-        let mid = from + (to - from) * 0.5;
+        // What is crowded is cut out in two steps instead of ever smaller halves around it.
+        let mid = match self.pencil(item).and_then(|p| p.1.crowded()) {
+            Some((a, _)) if from < a && a < to => a,
+            Some((_, b)) if from < b && b < to => b,
+            Some((a, b)) if a <= from && to <= b => to,
+            _ => from + (to - from) * 0.5,
+        };
         let (hull, most) = match me.carrier {
             Carrier::Graph(c) => (
                 self.k.hull(c, from, to),

@@ -226,9 +226,15 @@ impl<const FILTER: bool> Instant<Certified<FILTER>> for Time {
     fn between(a: &Time, b: &Time) -> Rat {
         Time::between(a, b)
     }
-    fn height(&self, p: &Poly, q: &Poly, near: &mut dyn FnMut(&Rat) -> Algebraic) -> Algebraic {
+    fn height(
+        &self,
+        p: &Poly,
+        q: &Poly,
+        about: Option<Interval>,
+        near: &mut dyn FnMut(&Rat) -> Algebraic,
+    ) -> Algebraic {
         let exact = self.exact();
-        exact.root_over(p, q, &mut |bits| {
+        exact.root_over_about(p, q, about, &mut |bits| {
             let (lo, hi) = exact.enclosure(bits);
             let (a, b) = (near(&lo), near(&hi));
             let (a, b) = if a <= b { (a, b) } else { (b, a) };

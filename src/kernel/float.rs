@@ -735,6 +735,7 @@ impl Instant<Float> for Moment {
         &self,
         _p: &FloatPoly,
         _q: &FloatPoly,
+        _about: Option<Interval>,
         near: &mut dyn FnMut(&Double) -> Place,
     ) -> Place {
         near(&Double(self.get()))

@@ -175,10 +175,15 @@ pub trait Instant<K: Kernel>: Clone + Debug + Ord {
     fn cmp_num(&self, t: &K::Num) -> Ordering;
     /// A number strictly between two different instants.
     fn between(a: &Self, b: &Self) -> K::Num;
-    /// The root of p + self·q that `near` points at: at a number near this instant it gives the
-    /// position to look at.
-    fn height(&self, p: &K::Poly, q: &K::Poly, near: &mut dyn FnMut(&K::Num) -> K::Root)
-    -> K::Root;
+    /// The root of p + self·q in the enclosure `about`, if that is given and holds no other; else that which `near`
+    /// points at: at a number near this instant it gives the position to look at.
+    fn height(
+        &self,
+        p: &K::Poly,
+        q: &K::Poly,
+        about: Option<Interval>,
+        near: &mut dyn FnMut(&K::Num) -> K::Root,
+    ) -> K::Root;
     /// The exact instant that stands for it in a result.
     fn publish(&self) -> Time;
 }

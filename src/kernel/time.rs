@@ -1,6 +1,7 @@
 use crate::number::filter::{self, Stage};
 use crate::number::{Algebraic, Int, Interval, Poly, Rat};
 use std::cmp::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering as AtomicOrdering};
 use std::sync::{Arc, OnceLock};
 
 /// An instant of a phase, counted from its start.
@@ -16,6 +17,7 @@ struct Inner {
     interval: Interval,
     form: Form,
     exact: OnceLock<Algebraic>,
+    name: OnceLock<u64>,
 }
 
 #[derive(Debug)]
@@ -31,7 +33,7 @@ impl Time {
             return Time::from(num.eval(&r) / den.eval(&r));
         }
         let at = x.interval();
-        let interval = num.eval_interval(at) / den.eval_interval(at);
+        let interval = Poly::quotient_over(&num, &den, at);
         Time(Arc::new(Inner {
             interval,
             form: Form::Ratio {
@@ -40,6 +42,7 @@ impl Time {
                 den,
             },
             exact: OnceLock::new(),
+            name: OnceLock::new(),
         }))
     }
     /// The instant that is the algebraic number x itself.
@@ -118,6 +121,14 @@ impl Time {
     pub fn same_handle(&self, other: &Time) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
+    /// A number that all handles of this instant share, and no other instant of this process ever has.
+    pub(crate) fn name(&self) -> u64 {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        *self
+            .0
+            .name
+            .get_or_init(|| NEXT.fetch_add(1, AtomicOrdering::Relaxed))
+    }
     /// Exact comparison with a rational.
     pub fn cmp_rat(&self, r: &Rat) -> Ordering {
         match &self.0.form {
@@ -141,7 +152,7 @@ impl Time {
         let (lo, hi) = if a < b { (a, b) } else { (b, a) };
         let (i, j) = (lo.interval(), hi.interval());
         if i.below(&j) && i.hi.is_finite() && j.lo.is_finite() {
-            return Rat::short_between(&Rat::from_f64(i.hi), &Rat::from_f64(j.lo));
+            return Rat::short_between_doubles(i.hi, j.lo);
         }
         Algebraic::between(lo.exact(), hi.exact())
     }
@@ -153,6 +164,7 @@ impl From<Rat> for Time {
             interval: r.tight(),
             form: Form::Rational(r),
             exact: OnceLock::new(),
+            name: OnceLock::new(),
         }))
     }
 }

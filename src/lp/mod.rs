@@ -21,6 +21,7 @@ mod outcome;
 mod problem;
 pub mod read;
 mod reconstruct;
+mod repair;
 pub mod report;
 mod safe;
 mod simplex;

@@ -7,6 +7,7 @@
 
 use super::model::{Model, Range};
 use super::outcome::{Certificate, Outcome, Status, Vector};
+use super::repair;
 use crate::number::{Int, Rat};
 
 /// What is proven about the optimum so far.
@@ -78,22 +79,35 @@ impl Known {
         if rest_feasible {
             self.point(model, vector(&rest));
         }
-        if let Some(mut y) = exact(y, model.rows.len()) {
-            for (v, r) in y.iter_mut().zip(&model.rows) {
-                // A price needs the bound that it leans on.
-                let sign = if model.maximise { -v.sign() } else { v.sign() };
-                let missing = match sign {
-                    1 => r.range.lower.is_none(),
-                    -1 => r.range.upper.is_none(),
-                    _ => false,
-                };
-                if missing {
-                    *v = Rat::zero();
+        self.double_prices(model, y);
+        self.prices(model, vector(&[]));
+        if self.dual.is_none() {
+            for near in [y, &[]] {
+                if let Some(y) = repair::prices(model, near) {
+                    self.double_prices(model, &y);
                 }
             }
-            self.prices(model, vector(&y));
         }
-        self.prices(model, vector(&[]));
+    }
+
+    /// Takes in prices that doubles suggest.
+    fn double_prices(&mut self, model: &Model, y: &[f64]) {
+        let Some(mut y) = exact(y, model.rows.len()) else {
+            return;
+        };
+        for (v, r) in y.iter_mut().zip(&model.rows) {
+            // A price needs the bound that it leans on.
+            let sign = if model.maximise { -v.sign() } else { v.sign() };
+            let missing = match sign {
+                1 => r.range.lower.is_none(),
+                -1 => r.range.upper.is_none(),
+                _ => false,
+            };
+            if missing {
+                *v = Rat::zero();
+            }
+        }
+        self.prices(model, vector(&y));
     }
 
     /// Whether doubles have any chance to be feasible as they are: not where rows are equations,

@@ -99,7 +99,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut known = Known::default();
     let mut guess = (Vec::new(), Vec::new());
     let start = if options.method == Method::Warm {
-        let proposal = float::propose(&problem, given.as_ref(), budget);
+        let proposal = float::propose(&problem, given.as_ref(), &budget.most());
         iterations = proposal.iterations;
         blame = proposal.blame;
         guess = (proposal.point.clone(), proposal.prices.clone());

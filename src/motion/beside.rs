@@ -121,7 +121,13 @@ impl<K: Kernel> Runner<'_, K> {
         let when = K::Time::of(t.clone());
         for &b in slice.arcs_in(chart) {
             let arc = slice.arc(b);
-            if !slice.alive_at(arc, &when) {
+            // Only what lies between x and the bound found so far can move it.
+            let (low, high) = if above {
+                (x.interval(), bound.interval())
+            } else {
+                (bound.interval(), x.interval())
+            };
+            if arc.x_span.hi < low.lo || high.hi < arc.x_span.lo || !slice.alive_at(arc, &when) {
                 continue;
             }
             let Some(h) = slice.height_at(arc, t) else {

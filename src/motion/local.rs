@@ -443,13 +443,13 @@ pub(super) fn snap<K: Kernel>(
                 continue;
             }
             if first {
-                if skip.iter().any(|i| i.arc == id) || slice.cmp_after_const(arc, t, x) != toward {
+                if skip.iter().any(|i| i.arc == id) || slice.cmp_after_const(id, t, x) != toward {
                     continue;
                 }
             } else if skip.iter().any(|i| i.arc == id && i.half_turn == half_turn) {
                 continue;
             }
-            if half_turn == 0 && slice.cmp_after_const(arc, t, &zero) != toward.reverse() {
+            if half_turn == 0 && slice.cmp_after_const(id, t, &zero) != toward.reverse() {
                 continue;
             }
             let nearer = match best {

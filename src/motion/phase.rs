@@ -402,7 +402,9 @@ impl<K: Kernel> Runner<'_, K> {
             return x;
         }
         let (p, q) = slice.curve(arc.curve).reduced(arc.chart);
-        t.height(p, q, &mut |t| {
+        let about = slice.position_about(id, t.interval());
+        let about = (K::ENCLOSES && about != arc.x_span).then_some(about);
+        t.height(p, q, about, &mut |t| {
             // Outside its span the arc is bounded by its own ends.
             if arc.start().t.cmp_num(t).is_ge() {
                 arc.start().x.clone()

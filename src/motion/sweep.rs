@@ -16,7 +16,7 @@ use super::local::State;
 use super::sight::{Arcs, Sight};
 use crate::contact::Chart;
 use crate::kernel::{Instant, Kernel, Position};
-use crate::number::{Rat, Scalar};
+use crate::number::{Interval, Rat, Scalar};
 use crate::slice::{ArcId, Configuration, Free, Owner, Point, Shape, Slice, Whereabouts};
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -125,6 +125,86 @@ impl<'a, K: Kernel> Sweep<'a, K> {
     }
 }
 
+/// In what part of its way a snap first looks for what stands in it, and how much further each time.
+const LOOK: f64 = 1.0 / 4096.0;
+const FURTHER: f64 = 8.0;
+
+impl<K: Kernel> Sweep<'_, K> {
+    /// The edges of a chart that may be met over a part of the strip, with their arcs.
+    fn edges_across(&self, chart: Chart, span: [f64; 2], when: Interval) -> Vec<(ArcId, u32)> {
+        let mut near = Vec::new();
+        self.free.edges_near(span, [when.lo, when.hi], |e| {
+            if let Owner::Arc(a) = self.free.edges()[e as usize].owner
+                && self.slice.arc(a).chart == chart
+            {
+                near.push((a, e));
+            }
+        });
+        near
+    }
+
+    /// Of those the ones that may be met first on the way down or up from `x`: what certainly stands in
+    /// the way hides all that certainly lies behind it, and enclosures alone tell.
+    fn first_across(
+        &self,
+        chart: Chart,
+        span: [f64; 2],
+        when: Interval,
+        x: Interval,
+        dir: i32,
+    ) -> Vec<(ArcId, u32)> {
+        const SLACK: f64 = 1e-9;
+        let moved = if chart == Chart::Back { 2.0 } else { 0.0 };
+        let (from, to) = if dir < 0 {
+            (span[0] + 2.0 * SLACK, x.lo + moved - SLACK)
+        } else {
+            (x.hi + moved + SLACK, span[1] - 2.0 * SLACK)
+        };
+        let t_of = |v: u32| self.free.vertices()[v as usize].t;
+        // Where an edge is at that time, and whether it certainly is there.
+        let place = |&(a, e): &(ArcId, u32)| {
+            let e = &self.free.edges()[e as usize];
+            let lasts = t_of(e.first())[1] < when.lo && when.hi < t_of(e.last())[0];
+            let [mut lo, mut hi, ..] = e.bounds;
+            if lasts {
+                let about = self.slice.position_about(a, when);
+                (lo, hi) = (lo.max(about.lo + moved), hi.min(about.hi + moved));
+            }
+            (lo, hi, lasts)
+        };
+        let mut reach = ((span[1] - span[0]) * LOOK).max(SLACK);
+        loop {
+            let window = if dir < 0 {
+                [span[0].max(to - reach), span[1]]
+            } else {
+                [span[0], span[1].min(from + reach)]
+            };
+            let mut near = self.edges_across(chart, window, when);
+            let places: Vec<_> = near.iter().map(place).collect();
+            let sure = places
+                .iter()
+                .filter(|p| p.2 && from.max(window[0]) < p.0 && p.1 < to.min(window[1]));
+            let mut places = places.iter();
+            let mut keep = |beside: &dyn Fn(&(f64, f64, bool)) -> bool| {
+                near.retain(|_| places.next().is_some_and(beside));
+            };
+            let stop = if dir < 0 {
+                let floor = sure.fold(f64::NEG_INFINITY, |f, p| f.max(p.0));
+                keep(&|p| p.1 >= floor);
+                floor
+            } else {
+                let ceiling = sure.fold(f64::INFINITY, |f, p| f.min(p.1));
+                keep(&|p| p.0 <= ceiling);
+                ceiling
+            };
+            if stop.is_finite() || window == span {
+                return near;
+            }
+            reach *= FURTHER;
+        }
+    }
+}
+
 impl<K: Kernel> Sight<K> for Sweep<'_, K> {
     fn along(&self, chart: Chart) -> Arcs<'_> {
         let Some(edge) = self.eye.borrow().edge else {
@@ -204,40 +284,12 @@ impl<K: Kernel> Sight<K> for Sweep<'_, K> {
         }
         let slack = 1e-9;
         let when = t.interval();
-        let mut out = Vec::new();
         let span = [lo + moved - slack, hi + moved + slack];
-        let mut near: Vec<(ArcId, u32)> = Vec::new();
-        self.free.edges_near(span, [when.lo, when.hi], |e| {
-            if let Owner::Arc(a) = self.free.edges()[e as usize].owner
-                && self.slice.arc(a).chart == chart
-            {
-                near.push((a, e));
-            }
-        });
-        if let Some(x) = x {
-            // What certainly stands in the way hides all that certainly lies behind it: enclosures alone tell.
-            let i = x.interval();
-            let (from, to) = if dir < 0 {
-                (lo + moved + slack, i.lo + moved - slack)
-            } else {
-                (i.hi + moved + slack, hi + moved - slack)
-            };
-            let edge = |e: u32| &self.free.edges()[e as usize];
-            let t_of = |v: u32| self.free.vertices()[v as usize].t;
-            let sure = near.iter().map(|n| edge(n.1)).filter(|e| {
-                from < e.bounds[0]
-                    && e.bounds[1] < to
-                    && t_of(e.first())[1] < when.lo
-                    && when.hi < t_of(e.last())[0]
-            });
-            if dir < 0 {
-                let floor = sure.fold(f64::NEG_INFINITY, |f, e| f.max(e.bounds[0]));
-                near.retain(|n| edge(n.1).bounds[1] >= floor);
-            } else {
-                let ceiling = sure.fold(f64::INFINITY, |f, e| f.min(e.bounds[1]));
-                near.retain(|n| edge(n.1).bounds[0] <= ceiling);
-            }
-        }
+        let near = match x {
+            None => self.edges_across(chart, span, when),
+            Some(x) => self.first_across(chart, span, when, x.interval(), dir),
+        };
+        let mut out = Vec::new();
         out.extend(near.iter().map(|n| n.0));
         if chart == Chart::Rest && lo <= -1.0 {
             // A level on the cut is met from below at the strip's other border.

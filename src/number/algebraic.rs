@@ -51,8 +51,10 @@ struct Quotient {
     den: Poly,
     /// The sign of den there.
     den_sign: i32,
-    /// Evaluated on the root's enclosure; None where that is too wide to be of use.
-    rough: Option<Interval>,
+    /// Evaluated on the root's enclosure.
+    wide: Interval,
+    /// Whether that is narrow enough to be shown.
+    useful: bool,
     resolved: OnceLock<Algebraic>,
 }
 
@@ -135,7 +137,15 @@ impl Algebraic {
             Rational(k) => k.interval,
             RootOf(r) => r.enclosure(),
             // The same answer whether or not the quotient has been resolved since.
-            QuotientOf(q) => q.rough.unwrap_or_else(|| self.settled().interval()),
+            QuotientOf(q) if q.useful => q.wide,
+            QuotientOf(_) => self.settled().interval(),
+        }
+    }
+    /// Certified doubles around the number, as narrow as they come without work.
+    fn around(&self) -> Interval {
+        match &self.0 {
+            QuotientOf(q) if filter::on() => q.wide,
+            _ => self.interval(),
         }
     }
     /// Rationals lo ≤ self ≤ hi with hi − lo ≤ 2^-bits; lo = hi only where self is rational and equal to it;
@@ -169,7 +179,7 @@ impl Algebraic {
     }
     /// -1, 0, 1.
     pub fn sign(&self) -> i32 {
-        if let Some(s) = self.interval().sign() {
+        if let Some(s) = self.around().sign() {
             filter::settled(Stage::Double);
             return s;
         }
@@ -185,7 +195,7 @@ impl Algebraic {
     }
     /// Exact comparison with a rational: at most one exact evaluation.
     pub fn cmp_rat(&self, r: &Rat) -> Ordering {
-        let (x, y) = (self.interval(), r.interval());
+        let (x, y) = (self.around(), r.interval());
         if let Some(o) = told_apart(&x, &y) {
             return o;
         }
@@ -219,7 +229,7 @@ impl Algebraic {
             Rational(k) => p.sign_at(&k.value),
             RootOf(root) => root.sign_of(p),
             QuotientOf(q) => {
-                if let Some(s) = p.eval_interval(self.interval()).sign() {
+                if let Some(s) = p.sign_over(self.around()) {
                     filter::settled(Stage::Double);
                     return s;
                 }
@@ -280,17 +290,17 @@ impl Algebraic {
             return Algebraic::from(Rat::zero());
         }
         let x = root.enclosure();
-        let q = num.eval_interval(x) / den.eval_interval(x);
+        let q = Poly::quotient_over(num, den, x);
         let size = q.lo.abs().min(q.hi.abs());
         let useful = q.is_finite() && q.sign().is_some() && q.width() <= size * 2f64.powi(-36);
         let (num, den) = (num.clone(), den.clone());
-        let rough = useful.then_some(q);
         Algebraic(QuotientOf(Arc::new(Quotient {
             root,
             num,
             den,
             den_sign,
-            rough,
+            wide: q,
+            useful,
             resolved: OnceLock::new(),
         })))
     }
@@ -305,18 +315,71 @@ impl Algebraic {
             Ordering::Equal => panic!("no number lies between equal numbers"),
         };
         // Doubles are dyadic rationals.
-        let (x, y) = (a.interval().hi, b.interval().lo);
+        let (x, y) = (a.around().hi, b.around().lo);
         if x < y && x.is_finite() && y.is_finite() {
-            return Rat::short_between(&Rat::from_f64(x), &Rat::from_f64(y));
+            return Rat::short_between_doubles(x, y);
         }
-        let mut bits = grid(a.interval(), 64) as u32;
+        let mut bits = grid(a.around(), 64);
+        let (mut u, mut v) = (a.narrowing(), b.narrowing());
         loop {
-            let ((_, x), (y, _)) = (a.enclosure(bits), b.enclosure(bits));
+            let ((_, x), (y, _)) = (u.at(bits), v.at(bits));
             match x.cmp(&y) {
                 Ordering::Less => return Rat::short_between(&x, &y),
                 // A common end of two open cells lies strictly between.
                 Ordering::Equal if a.cmp_rat(&x).is_lt() && b.cmp_rat(&x).is_gt() => return x,
                 _ => bits = 2 * bits + 32,
+            }
+        }
+    }
+    /// Ever narrower rational ends.
+    fn narrowing(&self) -> Narrowing<'_> {
+        match &self.0 {
+            Rational(k) => Narrowing::Known(&k.value),
+            RootOf(r) => Narrowing::Root(r.refine()),
+            QuotientOf(q) => match q.resolved.get() {
+                Some(r) => r.narrowing(),
+                None => Narrowing::Quotient(q.root.refine(), q),
+            },
+        }
+    }
+    /// Order by rational ends of so many bits after the point that ordinary coincidences of numbers
+    /// of this size stop there: only what still looks equal is worth a resultant.
+    fn told_apart_by_bits(&self, o: &Algebraic) -> Option<Ordering> {
+        let unresolved =
+            |a: &Algebraic| matches!(&a.0, QuotientOf(q) if q.resolved.get().is_none());
+        if !filter::on() || !(unresolved(self) || unresolved(o)) {
+            return None;
+        }
+        let wider = grid(self.around(), 100);
+        let most = self.coefficient_bits().max(o.coefficient_bits());
+        let (mut u, mut v) = (self.narrowing(), o.narrowing());
+        for bits in [wider, 2 * most] {
+            if bits < wider {
+                break;
+            }
+            let ((a, b), (c, d)) = (u.at(bits), v.at(bits));
+            let order = match (b < c, d < a) {
+                (true, _) => Ordering::Less,
+                (_, true) => Ordering::Greater,
+                _ => continue,
+            };
+            if bits == wider {
+                filter::settled(Stage::Wider);
+            } else {
+                filter::settled_exactly(false, bits);
+            }
+            return Some(order);
+        }
+        None
+    }
+    /// The bits of the largest integer that the number is written with.
+    fn coefficient_bits(&self) -> u64 {
+        match &self.0 {
+            Rational(k) => k.value.bits(),
+            RootOf(r) => r.poly.most_bits(),
+            QuotientOf(q) => {
+                let parts = q.num.most_bits().max(q.den.most_bits());
+                parts.max(q.root.poly.most_bits())
             }
         }
     }
@@ -331,6 +394,17 @@ impl Algebraic {
         q: &Poly,
         locate: &mut dyn FnMut(u32) -> (Rat, Rat),
     ) -> Algebraic {
+        self.root_over_about(p, q, None, locate)
+    }
+    /// The same where an enclosure of the root may be known already; `locate` is only asked if that holds
+    /// another root too.
+    pub(crate) fn root_over_about(
+        &self,
+        p: &Poly,
+        q: &Poly,
+        about: Option<Interval>,
+        locate: &mut dyn FnMut(u32) -> (Rat, Rat),
+    ) -> Algebraic {
         // Π over the roots t of m of (p + t·q), up to a constant: q^n·m(−p/q).
         let minus_p = -p;
         let mut resultant = match self.root() {
@@ -342,11 +416,17 @@ impl Algebraic {
             resultant = homogenise(&self.minimal_polynomial(), &minus_p, q);
         }
         let mut bits = 64;
-        let (lo, hi) = locate(bits);
-        if lo == hi {
-            return Algebraic::from(lo);
-        }
-        pick(&resultant, outer(&lo, &hi), || {
+        let rough = match about {
+            Some(about) => about,
+            None => {
+                let (lo, hi) = locate(bits);
+                if lo == hi {
+                    return Algebraic::from(lo);
+                }
+                outer(&lo, &hi)
+            }
+        };
+        pick(&resultant, rough, || {
             let x = locate(bits);
             bits = bits.saturating_mul(2);
             x
@@ -366,12 +446,30 @@ impl Quotient {
         let p = p.as_ref().unwrap_or(&root.poly);
         let resultant = quotient_polynomial(p, num, den);
         let x = root.enclosure();
-        let rough = num.eval_interval(x) / den.eval_interval(x);
+        let rough = Poly::quotient_over(num, den, x);
         let mut bits = grid(x, 64);
         let mut refiner = root.refine();
         pick(&resultant, rough, || {
             quotient_enclosure(&mut refiner, num, den, &mut bits)
         })
+    }
+}
+
+/// A number between rational ends that close in on it.
+enum Narrowing<'a> {
+    Known(&'a Rat),
+    Root(Refiner<'a>),
+    Quotient(Refiner<'a>, &'a Quotient),
+}
+
+impl Narrowing<'_> {
+    /// Ends lo ≤ number ≤ hi, about 2^-bits apart.
+    fn at(&mut self, bits: u64) -> (Rat, Rat) {
+        match self {
+            Narrowing::Known(r) => (r.clone(), r.clone()),
+            Narrowing::Root(r) => ends(r.cell(bits), bits),
+            Narrowing::Quotient(r, q) => quotient_enclosure(r, &q.num, &q.den, &mut bits.clone()),
+        }
     }
 }
 
@@ -392,18 +490,29 @@ fn quotient_enclosure(
             }
             Cell::Between(k) => k,
         };
-        let around = |p: &Poly| {
-            let (v, err) = value_on_cell(p, &k, b);
-            let e = -scale_of(p, b);
-            (Rat::dyadic(&v - &err, e), Rat::dyadic(v + err, e))
-        };
-        let ((n, m), (d, f)) = (around(num), around(den));
-        if d.sign() * f.sign() > 0 {
-            let mut q = [&n / &d, &n / &f, &m / &d, &m / &f];
-            q.sort();
-            let [lo, _, _, hi] = q;
-            return (lo, hi);
+        let ((n, n_err), (d, d_err)) = (value_on_cell(num, &k, b), value_on_cell(den, &k, b));
+        // num/den is the quotient of these times 2^shift.
+        let shift = scale_of(den, b) - scale_of(num, b);
+        let (n, d) = if d.sign() < 0 { (-n, -d) } else { (n, d) };
+        let (d_low, d_high) = (&d - &d_err, &d + &d_err);
+        if d_low.sign() <= 0 {
+            continue;
         }
+        let (n_low, n_high) = (&n - &n_err, n + n_err);
+        let over = |n: &Int, d: &Int, up: bool| {
+            let e = b as i64 + shift;
+            let q = if e >= 0 {
+                n.shl(e as u64).div_rem_floor(d).0
+            } else {
+                n.div_rem_floor(&d.shl(e.unsigned_abs())).0
+            };
+            Rat::dyadic(if up { q + Int::one() } else { q }, -(b as i64))
+        };
+        let d_of = |away_from_zero: bool| if away_from_zero { &d_low } else { &d_high };
+        return (
+            over(&n_low, d_of(n_low.sign() < 0), false),
+            over(&n_high, d_of(n_high.sign() > 0), true),
+        );
     }
 }
 
@@ -617,7 +726,7 @@ impl PartialEq for Algebraic {
         if self.named_alike(o) {
             return true;
         }
-        if let Some(o) = told_apart(&self.interval(), &o.interval()) {
+        if let Some(o) = told_apart(&self.around(), &o.around()) {
             return o.is_eq();
         }
         match (&self.0, &o.0) {
@@ -627,6 +736,7 @@ impl PartialEq for Algebraic {
             (QuotientOf(a), QuotientOf(b)) if Arc::ptr_eq(&a.root, &b.root) => {
                 a.cmp_same(b).is_eq()
             }
+            _ if self.told_apart_by_bits(o).is_some() => false,
             _ => match (self.root(), o.root()) {
                 (Ok(a), Ok(b)) if Arc::ptr_eq(a.representative(), b.representative()) => {
                     filter::settled(Stage::Name);
@@ -661,7 +771,7 @@ impl Ord for Algebraic {
         if self.named_alike(o) {
             return Ordering::Equal;
         }
-        if let Some(o) = told_apart(&self.interval(), &o.interval()) {
+        if let Some(o) = told_apart(&self.around(), &o.around()) {
             return o;
         }
         match (&self.0, &o.0) {
@@ -672,6 +782,9 @@ impl Ord for Algebraic {
                 return a.cmp_same(b);
             }
             _ => {}
+        }
+        if let Some(o) = self.told_apart_by_bits(o) {
+            return o;
         }
         let (a, b) = match (self.root(), o.root()) {
             (Ok(a), Ok(b)) => (a, b),

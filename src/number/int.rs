@@ -48,6 +48,16 @@ fn narrow(v: i128) -> bool {
     v as i64 as i128 == v
 }
 
+/// The squares modulo m < 128, a bit each.
+const fn squares(m: u64) -> u128 {
+    let (mut set, mut x) = (0, 0);
+    while x < m {
+        set |= 1 << (x * x % m);
+        x += 1;
+    }
+    set
+}
+
 /// Binary gcd on machine words; gcd(0, x) = x.
 #[inline]
 pub(crate) fn gcd_u64(mut a: u64, mut b: u64) -> u64 {
@@ -161,8 +171,22 @@ impl Int {
                 }
                 Int::from_u128(gcd_u128(a, b.rem(a)))
             }
-            (Big(a), Big(b)) => canonical(a.gcd(b)),
+            (Big(a), Big(b)) => {
+                // Doubles and dyadic gaps have powers of two for denominators.
+                let power = |v: &Long, zeros: u64| v.sign() > 0 && v.bits() == zeros + 1;
+                let zeros = |v: &Long| v.trailing_zeros().unwrap_or(0);
+                let (s, t) = (zeros(a), zeros(b));
+                if power(a, s) || power(b, t) {
+                    return Int::one().shl(s.min(t));
+                }
+                canonical(a.gcd(b))
+            }
         }
+    }
+    /// k where self is 2^k.
+    pub(super) fn log2(&self) -> Option<u64> {
+        let z = self.trailing_zeros()?;
+        (self.sign() > 0 && self.bits() == z + 1).then_some(z)
     }
     /// From an unsigned 128-bit value.
     pub(crate) fn from_u128(v: u128) -> Int {
@@ -191,9 +215,15 @@ impl Int {
                     None => self.negated(),
                 }
             }
-            (Big(a), Small(b)) => canonical(a.div_small(*b)),
+            (Big(a), Small(b)) => match d.log2() {
+                Some(k) => canonical(a.shr(k)),
+                None => canonical(a.div_small(*b)),
+            },
             (Small(a), Big(b)) => canonical(Long::of(*a).div_exact(b)),
-            (Big(a), Big(b)) => canonical(a.div_exact(b)),
+            (Big(a), Big(b)) => match d.log2() {
+                Some(k) => canonical(a.shr(k)),
+                None => canonical(a.div_exact(b)),
+            },
         }
     }
     /// Floor division: `self = q·d + r` with 0 ≤ r < d for d > 0 (and d < r ≤ 0 for d < 0).
@@ -217,6 +247,15 @@ impl Int {
                 }
             }
             _ => {
+                if let Some(k) = d.log2() {
+                    let q = self.shr(k);
+                    let r = self - q.shl(k);
+                    return (q, r);
+                }
+                if let (Big(a), Big(b)) = (&self.0, &d.0) {
+                    let (q, r) = a.div_mod_floor(b);
+                    return (canonical(q), canonical(r));
+                }
                 let (q, r) = self.to_big().div_mod_floor(&d.to_big());
                 (canonical(q), canonical(r))
             }
@@ -291,6 +330,15 @@ impl Int {
         if SQUARES >> low & 1 == 0 {
             return None;
         }
+        if let Big(b) = &self.0 {
+            // Modulo 63, 65, 11 and 17 squares are so few that hardly another number passes.
+            const MODULI: [u64; 4] = [63, 65, 11, 17];
+            const SQUARES: [u128; 4] = [squares(63), squares(65), squares(11), squares(17)];
+            let r = b.rem(63 * 65 * 11 * 17) as u64;
+            if (0..4).any(|i| SQUARES[i] >> (r % MODULI[i]) & 1 == 0) {
+                return None;
+            }
+        }
         let r = self.sqrt()?;
         (&r * &r == *self).then_some(r)
     }
@@ -332,7 +380,7 @@ impl Int {
                 f(v as u64);
                 f((v >> 64) as u64);
             }
-            Big(b) => b.words().into_iter().for_each(f),
+            Big(b) => b.for_each_word(f),
         }
     }
     /// |self| = (top + fraction)·2^shift with 0 ≤ fraction < 1, `top` of at most 64 bits and the

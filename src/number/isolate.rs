@@ -4,7 +4,10 @@
 //! polynomial has at most as many roots inside as its coefficients have sign changes, and no or one sign
 //! change is exact. So halve the interval (de Casteljau: only additions and shifts on integers) until every
 //! piece shows none or one. On a square-free polynomial this ends. Positive and negative roots are
-//! searched apart, from zero to a power of two above all roots.
+//! searched apart, from zero to a power of two above all roots. Where halving only ever drops one side, a
+//! cluster of roots is being zoomed in on, and Newton's step for a root of that multiplicity points at
+//! it (Sagraloff 2012): the cell that it names replaces the piece if no sign changes are left outside of it, and the
+//! number of bits gained so doubles from jump to jump. Whether a jump is taken costs or saves time, no more.
 
 use super::{Int, Poly, Rat, float};
 
@@ -121,6 +124,92 @@ fn halve(b: &[Int]) -> (Vec<Int>, Vec<Int>) {
     (left, right)
 }
 
+/// Sign changes, zeros skipped.
+fn all_variations(b: &[Int]) -> usize {
+    let signs = b.iter().map(Int::sign).filter(|&s| s != 0);
+    let (mut last, mut count) = (0, 0);
+    for s in signs {
+        count += usize::from(last * s < 0);
+        last = s;
+    }
+    count
+}
+
+/// The Bernstein coefficients on both sides of u = j/d, up to a positive factor each: as de Casteljau's weights
+/// leave them, the l-th on the left and the l-th from the end on the right times d^l. Value at u: where they meet.
+fn split(b: &[Int], j: &Int, d: &Int) -> (Vec<Int>, Vec<Int>) {
+    let n = b.len() - 1;
+    let rest = d - j;
+    let mut row = b.to_vec();
+    let mut left = Vec::with_capacity(n + 1);
+    for l in 0..=n {
+        left.push(row[0].clone());
+        for i in 0..n - l {
+            row[i] = &row[i] * &rest + &row[i + 1] * j;
+        }
+    }
+    (left, row)
+}
+
+/// The cell j of 2^t equal ones that holds all roots of a piece, as far as sign changes tell: j and the
+/// coefficients there. `u` is where the roots are thought to be, in units of the cell.
+fn jump(b: &[Int], j: &Int, t: u64) -> Option<Vec<Int>> {
+    let n = b.len() - 1;
+    let d = Int::one().shl(t);
+    let mut cell = b.to_vec();
+    if !j.is_zero() {
+        let (outside, mut right) = split(b, j, &d);
+        if right[0].is_zero() || all_variations(&outside) > 0 {
+            return None;
+        }
+        for (i, c) in right.iter_mut().enumerate() {
+            *c = c.shl(t * i as u64);
+        }
+        cell = right;
+    } else {
+        for c in &mut cell {
+            *c = c.shl(t * n as u64);
+        }
+    }
+    let rest = &d - j;
+    if !rest.is_one() {
+        let (mut inside, outside) = split(&cell, &Int::one(), &rest);
+        if inside[n].is_zero() || all_variations(&outside) > 0 {
+            return None;
+        }
+        // Substitution of (j + u)/2^t leaves integers, so the powers of the divisor go out again.
+        let mut power = Int::one();
+        for c in &mut inside {
+            *c = c.div_exact(&power);
+            power *= &rest;
+        }
+        cell = inside;
+    }
+    strip(&mut cell);
+    Some(cell)
+}
+
+/// Newton's guesses for a root of multiplicity k, from both ends, as cells of 2^t.
+fn guesses(b: &[Int], t: u64) -> [Option<Int>; 2] {
+    let n = b.len() - 1;
+    let k = Int::from(all_variations(b) as i64);
+    let most = Int::one().shl(t) - Int::one();
+    let from = |value: &Int, next: &Int| {
+        // u = −k·f/f' with f' = n·(next − value).
+        let slope = (next - value) * Int::from(n as i64);
+        if slope.sign() * value.sign() >= 0 {
+            return None;
+        }
+        // More leading bits than the cell's number has would be wasted.
+        let cut = slope.bits().saturating_sub(t + 16);
+        let (v, s) = (value.shr(cut).abs(), slope.shr(cut).abs());
+        let j = (&k * v).shl(t).div_rem_floor(&s).0;
+        (j <= most).then_some(j)
+    };
+    let right = from(&b[n], &b[n - 1]).map(|j| &most - j);
+    [from(&b[0], &b[1]), right]
+}
+
 fn strip(b: &mut [Int]) {
     if let Some(z) = b.iter().filter_map(Int::trailing_zeros).min()
         && z > 0
@@ -130,6 +219,9 @@ fn strip(b: &mut [Int]) {
         }
     }
 }
+
+/// So many halvings that drop one side come before a jump.
+const PATIENCE: u64 = 4;
 
 /// The positive roots of a square-free polynomial with non-zero constant term, ascending.
 fn positive(c: &[Int], out: &mut Vec<Isolated>) {
@@ -152,20 +244,21 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) {
         })
         .collect();
     enum Step {
-        Piece(Vec<Int>, Int, i64),
+        /// Coefficients, position, depth, and how often in a row one side has been dropped.
+        Piece(Vec<Int>, Int, i64, u64),
         Met(Rat),
     }
     let mut first = bernstein(&scaled);
     strip(&mut first);
-    let mut stack = vec![Step::Piece(first, Int::zero(), 0)];
+    let mut stack = vec![Step::Piece(first, Int::zero(), 0, 0)];
     while let Some(step) = stack.pop() {
         // The piece is [at, at + 1]·2^(k − depth).
-        let (b, at, depth) = match step {
+        let (b, at, depth, mut run) = match step {
             Step::Met(r) => {
                 out.push(Isolated::Exact(r));
                 continue;
             }
-            Step::Piece(b, at, depth) => (b, at, depth),
+            Step::Piece(b, at, depth, run) => (b, at, depth, run),
         };
         match variations(&b) {
             0 => continue,
@@ -190,14 +283,29 @@ fn positive(c: &[Int], out: &mut Vec<Isolated>) {
             // A root at an end of the piece, already reported: halve on until it is left behind.
             _ => {}
         }
+        if run >= PATIENCE {
+            let cells = guesses(&b, run).into_iter().flatten();
+            if let Some((j, cell)) = { cells }.find_map(|j| Some((j.clone(), jump(&b, &j, run)?))) {
+                stack.push(Step::Piece(
+                    cell,
+                    at.shl(run) + j,
+                    depth + run as i64,
+                    2 * run,
+                ));
+                continue;
+            }
+            run = 0;
+        }
         let (left, right) = halve(&b);
+        let dropped = all_variations(&left) == 0 || all_variations(&right) == 0;
+        let run = if dropped { run + 1 } else { 0 };
         let middle = at.shl(1) + Int::one();
         let met = right[0]
             .is_zero()
             .then(|| Rat::dyadic(middle.clone(), k - depth - 1));
-        stack.push(Step::Piece(right, middle, depth + 1));
+        stack.push(Step::Piece(right, middle, depth + 1, run));
         stack.extend(met.map(Step::Met));
-        stack.push(Step::Piece(left, at.shl(1), depth + 1));
+        stack.push(Step::Piece(left, at.shl(1), depth + 1, run));
     }
 }
 
@@ -314,6 +422,42 @@ mod tests {
         }
         // Not merely correct: the quick way is the usual one.
         assert!(settled > 400, "{settled}");
+    }
+
+    #[test]
+    fn jumps_find_the_clusters_that_halving_finds() {
+        // Products of (x − u)² − 2^-2k and the like: pairs and triples of roots 2^-k apart, at places of a
+        // few digits and at dyadic ones, where they straddle a border of every grid.
+        let mut seed = 3;
+        for round in 0..40usize {
+            let k = [20, 90, 300, 1001][round % 4];
+            let u = &coefficients(&mut seed, 2, 30)[0].abs() + Int::one();
+            let w = [Int::from(3i64), Int::from(8i64), u.clone()][round / 4 % 3].clone();
+            // w·x − u
+            let line = Poly::new(vec![-&u, w]);
+            let tiny = Poly::constant(Int::one()).scale(&Int::from(1 + (round % 3) as i64));
+            let mut p = (&line * &line).scale(&Int::one().shl(2 * k)) - tiny;
+            if round % 2 == 1 {
+                p = &p * (line.scale(&Int::one().shl(k + 7)) - Poly::constant(Int::one()));
+            }
+            p = p * Poly::new(coefficients(&mut seed, 3, 20));
+            if p.degree().is_none_or(|d| d < 4) || p.coeff(0).is_zero() {
+                continue;
+            }
+            let p = p.squarefree();
+            let found = Algebraic::from_isolated(p.clone(), exact(&p, p.coeffs(), false));
+            // Each certified root by root, by signs at rationals between them, and their number by factors.
+            let mut want: Vec<Algebraic> = Vec::new();
+            for f in p.irreducible_factors() {
+                want.extend(f.real_roots());
+            }
+            want.sort();
+            assert_eq!(found, want, "{p}");
+            for pair in found.windows(2) {
+                let between = Algebraic::between(&pair[0], &pair[1]);
+                assert!(p.sign_at(&between) != 0 && pair[0].cmp_rat(&between).is_lt());
+            }
+        }
     }
 
     #[test]

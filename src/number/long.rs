@@ -131,6 +131,18 @@ impl Long {
             |a: &rug::Integer| a.to_digits(rug::integer::Order::Lsf)
         )
     }
+    /// The same without a list.
+    pub(super) fn for_each_word(&self, #[allow(unused_mut)] mut f: impl FnMut(u64)) {
+        match self {
+            Num(a) => a.iter_u64_digits().for_each(f),
+            #[cfg(feature = "rug")]
+            Gmp(a) => {
+                for w in a.as_limbs() {
+                    f(*w as u64);
+                }
+            }
+        }
+    }
     /// The lowest word of the absolute value.
     pub(super) fn low_word(&self) -> u64 {
         one!(

@@ -8,8 +8,8 @@ use super::algebraic::Algebraic;
 use super::filter::{self, Stage};
 use super::int::ops;
 use super::isolate::isolate;
-use super::modular::gcd_degree_bound;
-use super::{Int, Interval, Rat, factor};
+use super::quadratic::quadratic_roots;
+use super::{Int, Interval, Rat, factor, gcd};
 use std::fmt;
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -139,7 +139,7 @@ impl Poly {
     }
     /// Sign of the value at a rational (f64 filter first).
     pub fn sign_at(&self, x: &Rat) -> i32 {
-        if let Some(s) = self.eval_interval(x.interval()).sign() {
+        if let Some(s) = self.sign_over(x.interval()) {
             filter::settled(Stage::Double);
             return s;
         }
@@ -149,14 +149,33 @@ impl Poly {
     }
     /// Enclosure of the range over an interval.
     pub fn eval_interval(&self, x: Interval) -> Interval {
+        self.eval_scaled(x, 0)
+    }
+    /// Enclosure of the range over an interval, times 2^shift.
+    fn eval_scaled(&self, x: Interval, shift: i64) -> Interval {
         if !filter::on() {
             return Interval::all();
         }
+        let of = |c: &Int| match shift {
+            0 => c.interval(),
+            _ => c.interval_shifted(shift),
+        };
         let mut terms = self.coeffs.iter().rev();
         let Some(first) = terms.next() else {
             return Interval::point(0.0);
         };
-        terms.fold(first.interval(), |acc, c| acc * x + c.interval())
+        terms.fold(of(first), |acc, c| acc * x + of(c))
+    }
+    /// The sign that the values over an interval are proven to have. Coefficients past the range of doubles
+    /// are scaled into it together.
+    pub(crate) fn sign_over(&self, x: Interval) -> Option<i32> {
+        self.eval_scaled(x, into_range(self.most_bits())).sign()
+    }
+    /// Enclosure of num/den over an interval; both are scaled together where doubles do not hold
+    /// their coefficients.
+    pub(crate) fn quotient_over(num: &Poly, den: &Poly, x: Interval) -> Interval {
+        let shift = into_range(num.most_bits().max(den.most_bits()));
+        num.eval_scaled(x, shift) / den.eval_scaled(x, shift)
     }
     /// The bits of the largest coefficient.
     pub(crate) fn most_bits(&self) -> u64 {
@@ -248,21 +267,18 @@ impl Poly {
         if other.is_zero() {
             return self.primitive();
         }
-        let bound = gcd_degree_bound(self, other);
-        if bound == Some(0) || self.coeffs.len() == 1 || other.coeffs.len() == 1 {
+        if self.coeffs.len() == 1 || other.coeffs.len() == 1 {
             return Poly::constant(Int::one());
+        }
+        if let Some(g) = gcd::gcd(self, other) {
+            return g;
         }
         let (a, b) = if self.coeffs.len() >= other.coeffs.len() {
             (self, other)
         } else {
             (other, self)
         };
-        let (a, b) = (a.primitive(), b.primitive());
-        // The smaller one divides the larger: the usual reason for a bound this high.
-        if bound.is_none_or(|d| Some(d) == b.degree()) && a.div_exact(&b).is_some() {
-            return b;
-        }
-        subresultant_gcd(a, b)
+        subresultant_gcd(a.primitive(), b.primitive())
     }
     /// Remainder of lc(d)^(n−m+1)·self by d, for n ≥ m.
     fn pseudo_rem(&self, d: &Poly) -> Poly {
@@ -425,7 +441,7 @@ impl Poly {
 }
 
 /// Primitive gcd of primitive polynomials, deg a ≥ deg b (Brown & Traub; Cohen, algorithm 3.3.1).
-fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
+pub(super) fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
     let (mut g, mut h) = (Int::one(), Int::one());
     loop {
         let delta = (a.coeffs.len() - b.coeffs.len()) as u32;
@@ -448,49 +464,11 @@ fn subresultant_gcd(mut a: Poly, mut b: Poly) -> Poly {
     }
 }
 
-/// The real roots of a·x² + b·x + c, a ≠ 0, ascending.
-fn quadratic_roots(a: &Int, b: &Int, c: &Int) -> Vec<Algebraic> {
-    let four = Int::from(4i64);
-    let d = b * b - &four * a * c;
-    let two_a = a + a;
-    match d.sign() {
-        -1 => Vec::new(),
-        0 => vec![Algebraic::from(Rat::new(-b, two_a))],
-        _ => {
-            if let Some(s) = d.sqrt_exact() {
-                let (x, y) = (Rat::new(-b - &s, two_a.clone()), Rat::new(&s - b, two_a));
-                return if x < y {
-                    vec![x.into(), y.into()]
-                } else {
-                    vec![y.into(), x.into()]
-                };
-            }
-            // The enclosures of both roots, written so that nothing cancels.
-            let (ia, ib, ic, s) = (
-                a.interval(),
-                b.interval(),
-                c.interval(),
-                d.interval().sqrt(),
-            );
-            let positive = b.sign() >= 0;
-            let q = if positive { -(ib + s) } else { s - ib };
-            let (mut x, mut y) = (q / (ia + ia), (ic + ic) / q);
-            // x is the root nearer −∞ where a and b agree in sign.
-            if positive != (a.sign() > 0) {
-                std::mem::swap(&mut x, &mut y);
-            }
-            let p = Poly {
-                coeffs: vec![c.clone(), b.clone(), a.clone()],
-            }
-            .primitive();
-            if x.below(&y) && x.is_finite() && y.is_finite() {
-                // Doubles are rational and the roots are not: each enclosure holds one root, in its interior.
-                return Algebraic::pair(p, x, y);
-            }
-            let found = isolate(&p);
-            Algebraic::from_isolated(p, found)
-        }
-    }
+/// The shift that brings integers of so many bits well into the range of doubles, 0 where they are already.
+fn into_range(bits: u64) -> i64 {
+    const LIMIT: i64 = 400;
+    let bits = bits as i64;
+    if bits > LIMIT { LIMIT - bits } else { 0 }
 }
 
 /// Human form, highest power first.

@@ -6,6 +6,7 @@
 //! wrong guess halves t, down to plain bisection, so nothing depends on luck.
 
 use super::{Int, Interval, Poly, Rat, rat::decompose};
+use std::sync::Mutex;
 
 /// The open interval (lo, hi)/2^e.
 #[derive(Clone)]
@@ -45,6 +46,14 @@ impl Span {
             hi: hi.lo,
         })
     }
+    /// Doubles around it.
+    pub(crate) fn hull(&self) -> Interval {
+        let e = -(self.e as i64);
+        Interval {
+            lo: self.lo.interval_shifted(e).lo,
+            hi: self.hi.interval_shifted(e).hi,
+        }
+    }
     pub(crate) fn low(&self) -> Rat {
         Rat::dyadic(self.lo.clone(), -(self.e as i64))
     }
@@ -77,6 +86,21 @@ pub(crate) struct Refiner<'a> {
     /// The next cut is into 2^t parts.
     t: u64,
     exact: Option<Rat>,
+    /// Where the interval reached is left for the next refinement, with its precision at the start.
+    keep: Option<(&'a Mutex<Option<Span>>, u64)>,
+}
+
+impl Drop for Refiner<'_> {
+    fn drop(&mut self) {
+        if let Some((place, from)) = self.keep
+            && self.span.e > from
+        {
+            let mut kept = place.lock().unwrap_or_else(|e| e.into_inner());
+            if kept.as_ref().is_none_or(|s| s.e < self.span.e) {
+                *kept = Some(self.span.clone());
+            }
+        }
+    }
 }
 
 impl<'a> Refiner<'a> {
@@ -90,7 +114,7 @@ impl<'a> Refiner<'a> {
             .bits()
             .max(span.hi.bits())
             .saturating_sub(width.bits() + 3))
-        .clamp(1, 64);
+        .clamp(1, 1 << 12);
         Refiner {
             p,
             sign_lo,
@@ -99,7 +123,13 @@ impl<'a> Refiner<'a> {
             ends: None,
             t,
             exact: None,
+            keep: None,
         }
+    }
+    /// The same, leaving the interval that it ends with.
+    pub(crate) fn keeping(mut self, place: &'a Mutex<Option<Span>>) -> Refiner<'a> {
+        self.keep = Some((place, self.span.e));
+        self
     }
     /// The interval reached so far.
     pub(crate) fn span(&self) -> &Span {
@@ -178,7 +208,8 @@ impl<'a> Refiner<'a> {
         };
         self.span = Span { lo, hi, e: fine };
         self.ends = Some((at_lo, at_hi));
-        self.t = 2 * t;
+        // A step cut short at the precision asked for says nothing against longer ones.
+        self.t = self.t.max(2 * t);
     }
 }
 

@@ -6,13 +6,15 @@
 
 use super::filter::{self, Stage};
 use super::float::FloatPoly;
-use super::modular::gcd_degree_bound;
 use super::refine::{Cell, Refiner, Span};
 use super::{Int, Interval, Poly, Rat};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// How wide, for its size, a double enclosure may be: some dozen units in the last place.
-const NARROW: f64 = 1e-14;
+pub(super) const NARROW: f64 = 1e-14;
+
+/// How many polynomials a root remembers to vanish there.
+const MOST_KNOWN: usize = 16;
 
 /// Invariant: `poly` is primitive and square-free with a positive leading coefficient; it has exactly one root
 /// in the open interval `span`, none at the ends, so `sign_lo` ≠ 0 is its sign at the lower end and −sign_lo
@@ -22,6 +24,11 @@ pub(crate) struct Root {
     pub(crate) span: Span,
     sign_lo: i32,
     enclosure: OnceLock<(Interval, Option<Span>)>,
+    /// The narrowest interval that a refinement has ended with. Cells of a grid are what they are,
+    /// whatever they are found from.
+    sharp: Mutex<Option<Span>>,
+    /// Polynomials proven to vanish here: what is proven once is known by name from then on.
+    vanishing: Mutex<Vec<Poly>>,
     rational: OnceLock<Option<Rat>>,
     minimal: OnceLock<Arc<Poly>>,
     /// Another root that has been proven to be the same number; what is proven once is one handle
@@ -40,6 +47,8 @@ impl Root {
             span,
             sign_lo,
             enclosure,
+            sharp: Mutex::new(None),
+            vanishing: Mutex::new(Vec::new()),
             rational,
             minimal,
             same: OnceLock::new(),
@@ -72,6 +81,15 @@ impl Root {
         let _ = root.enclosure.set((x, None));
         root
     }
+    /// With an isolating interval that is narrow for the root's size: its hull in doubles is the enclosure.
+    pub(super) fn spanned(poly: Arc<Poly>, span: Span, sign_lo: i32) -> Root {
+        let x = span.hull();
+        let root = Root::new(poly, span, sign_lo);
+        if x.is_finite() {
+            let _ = root.enclosure.set((x, None));
+        }
+        root
+    }
     /// The one root that a square-free polynomial is proven to have in an interval of doubles.
     pub(crate) fn adopt(poly: &Poly, x: Interval) -> Option<Root> {
         if !(x.is_finite() && x.lo < x.hi) {
@@ -85,15 +103,19 @@ impl Root {
             sign_lo,
         ))
     }
-    /// A refinement that starts from the narrow enclosure: always, so that no answer depends on what
-    /// was asked before.
+    /// A refinement that starts from the narrowest interval reached so far, and leaves its own there.
     pub(crate) fn refine(&self) -> Refiner<'_> {
-        if !filter::on() {
-            return Refiner::new(&self.poly, self.span.clone(), self.sign_lo);
-        }
-        self.enclosure();
-        let best = self.enclosure.get().and_then(|(_, s)| s.as_ref());
-        Refiner::new(&self.poly, best.unwrap_or(&self.span).clone(), self.sign_lo)
+        let sharp = self.sharp.lock().unwrap_or_else(|e| e.into_inner()).clone();
+        let start = sharp.unwrap_or_else(|| {
+            if filter::on() {
+                self.enclosure();
+            }
+            let best = self.enclosure.get().filter(|_| filter::on());
+            best.and_then(|(_, s)| s.as_ref())
+                .unwrap_or(&self.span)
+                .clone()
+        });
+        Refiner::new(&self.poly, start, self.sign_lo).keeping(&self.sharp)
     }
     /// Certified double enclosure, made once; the whole line where the filter is off.
     pub(crate) fn enclosure(&self) -> Interval {
@@ -196,9 +218,6 @@ impl Root {
         if p.is_zero() {
             return true;
         }
-        if gcd_degree_bound(&self.poly, p) == Some(0) {
-            return false;
-        }
         // A divisor of `poly` has no root at the ends and at most one, simple, between.
         let g = self.poly.gcd(p);
         g.coeffs().len() > 1 && self.span.changes_sign(&g)
@@ -212,19 +231,25 @@ impl Root {
             // Ends of either interval are no roots, and each holds but one.
             return common.changes_sign(&self.poly);
         }
-        if gcd_degree_bound(&self.poly, &o.poly) == Some(0) {
-            return false;
-        }
         let g = self.poly.gcd(&o.poly);
         g.coeffs().len() > 1 && common.changes_sign(&g)
     }
     /// Exact sign of a polynomial at the root: an interval first, then a gcd for zero, then refinement.
     pub(crate) fn sign_of(&self, p: &Poly) -> i32 {
-        if let Some(s) = p.eval_interval(self.enclosure()).sign() {
+        if let Some(s) = p.sign_over(self.enclosure()) {
             filter::settled(Stage::Double);
             return s;
         }
+        let known = || self.vanishing.lock().unwrap_or_else(|e| e.into_inner());
+        if filter::on() && (*p == *self.poly || known().contains(p)) {
+            filter::settled(Stage::Name);
+            return 0;
+        }
         if self.is_root_of(p) {
+            let mut known = known();
+            if known.len() < MOST_KNOWN {
+                known.push(p.clone());
+            }
             filter::settled_exactly(true, self.poly.most_bits().max(p.most_bits()));
             return 0;
         }

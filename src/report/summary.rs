@@ -1,7 +1,7 @@
 //! The result for a reader at a terminal: one sentence, why, and a table a pawl.
 
 use super::json::{EventDocument, ResultDocument};
-use super::words::{approx, contacts, degrees, exactly, headline, reason};
+use super::words::{UNPROVEN, approx, contacts, degrees, exactly, headline, reason};
 use std::fmt::Write;
 
 /// Whether and how the summary stresses what matters.
@@ -27,6 +27,10 @@ pub fn summary(result: &ResultDocument, style: Style) -> String {
     let mut out = style.paint("1", &headline(result)) + "\n";
     if let Some(why) = reason(result) {
         out.push_str(&why);
+        out.push('\n');
+    }
+    if result.arithmetic == "f64" {
+        out.push_str(UNPROVEN);
         out.push('\n');
     }
     for branch in result.outcome.branches.iter().flatten() {

@@ -6,6 +6,10 @@ use super::json::{
 };
 use super::num::{Exact, Num};
 
+/// What a reader of results in doubles has to know.
+pub(crate) const UNPROVEN: &str =
+    "computed in doubles with a tolerance: not proven, and may be wrong";
+
 /// A double to so many significant digits, without trailing zeros.
 pub(crate) fn digits(x: f64, significant: usize) -> String {
     if x == 0.0 || !x.is_finite() {
@@ -36,7 +40,7 @@ fn trim(text: &str) -> &str {
 }
 
 /// A true minus sign, as wide as a plus.
-fn minus(text: &str) -> String {
+pub(crate) fn minus(text: &str) -> String {
     text.replace('-', "−")
 }
 
@@ -55,7 +59,7 @@ pub(crate) fn short(n: &Num) -> String {
 }
 
 /// `= 7/2`, or `≈ 1.41421`.
-fn equals(n: &Num) -> String {
+pub(crate) fn equals(n: &Num) -> String {
     match short(n).strip_prefix('≈') {
         Some(rounded) => format!("≈ {rounded}"),
         None => format!("= {}", short(n)),

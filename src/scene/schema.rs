@@ -204,6 +204,8 @@ struct ClassifySection {
     total: Option<bool>,
     /// The modulus bound of a force diode.
     force_limit: Option<Number>,
-    /// How far an escape must run. Left out: past the bounding box of the scene.
+    /// How far a direction of the circle must run to be a way out (with `total`). The family's
+    /// directions run the length of the phase that they reverse. Left out: past the bounding box
+    /// of the scene.
     escape_distance: Option<Number>,
 }

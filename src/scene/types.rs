@@ -83,6 +83,7 @@ pub struct Classify {
     pub total: bool,
     /// The modulus bound of a force diode.
     pub force_limit: Option<Rat>,
-    /// How far an escape must run.
+    /// How far a direction of the circle must run to be a way out; the family's run the length
+    /// of the phase that they reverse.
     pub escape_distance: Option<Rat>,
 }

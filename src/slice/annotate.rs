@@ -26,6 +26,26 @@ fn starts(keys: impl Iterator<Item = u32>, n: usize) -> Vec<u32> {
     out
 }
 
+/// The box of an edge and, for a graph, a strip along its chord: long edges beside each other share most of their
+/// boxes.
+fn hull(k: &FaceKernel, e: &FreeEdge) -> Hull {
+    let boxed = Hull::boxed(e.bounds);
+    match e.shape {
+        Shape::Graph { .. } if matches!(e.owner, Owner::Arc(_)) => {
+            let strip = k.hull(e.curve, e.bounds[0], e.bounds[1]);
+            if strip.low.is_finite() && strip.high.is_finite() {
+                Hull {
+                    bounds: e.bounds,
+                    ..strip
+                }
+            } else {
+                boxed
+            }
+        }
+        _ => boxed,
+    }
+}
+
 /// What is to be known along whole arcs.
 #[derive(Clone, Default)]
 pub(super) struct Along {
@@ -128,11 +148,11 @@ impl Draft {
             leaving.iter().map(|&e| edges[e as usize].first()),
             vertices.len(),
         );
-        let entries = edges
-            .iter()
-            .enumerate()
-            .map(|(i, e)| (Hull::boxed(e.bounds), i as u32))
-            .collect();
+        let entries = {
+            let k = self.kernel.lock().unwrap_or_else(|e| e.into_inner());
+            let hulls = edges.iter().map(|e| hull(&k, e));
+            hulls.zip(0..).collect()
+        };
         let mut free = Free {
             kernel: self.kernel,
             duration: slice.frame.duration.to_rat(),

@@ -204,6 +204,7 @@ impl Free {
             uprights: &strip.uprights,
             glue: &strip.glue,
             second: &strip.second,
+            names: &strip.names,
         };
         let how = Way {
             method: way,
@@ -335,7 +336,7 @@ impl Free {
             None
         }
     }
-    /// The edges whose boxes meet a box of the strip.
+    /// Edges, all that meet a box of the strip among them.
     pub fn edges_near(&self, x: [f64; 2], t: [f64; 2], mut found: impl FnMut(u32)) {
         self.tree
             .query(&Hull::boxed([x[0], x[1], t[0], t[1]]), |e| {

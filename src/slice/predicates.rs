@@ -1,6 +1,7 @@
 //! The questions that the motion asks of the slice. Everything here is decided exactly; the
 //! enclosures that come first only save work.
 
+use super::scout;
 use super::{Arc, ArcId, CurveId, Shape, Slice};
 use crate::contact::Chart;
 use crate::kernel::{Filtered, Instant, Kernel, Polynomial, Position};
@@ -295,9 +296,19 @@ impl<K: Kernel> Slice<K> {
         arc.start().t <= *t && *t <= arc.end().t
     }
 
+    /// An enclosure of the position of an arc at t, where it is alive: of a graph by doubles alone, from the
+    /// C-function of its patch.
+    pub fn position_about(&self, id: ArcId, t: Interval) -> Interval {
+        let arc = self.arc(id);
+        match (arc.shape, self.rough_at(id, t)) {
+            (Shape::Graph { .. }, Some((f, t))) => scout::position(f, arc.chart, t, arc.x_span),
+            _ => arc.x_span,
+        }
+    }
+
     /// The position of an arc just after t against a constant x; `Equal` only for a level there.
-    pub fn cmp_after_const(&self, arc: &Arc<K>, t: &K::Time, x: &K::Root) -> Ordering {
-        let xi = x.interval();
+    pub fn cmp_after_const(&self, id: ArcId, t: &K::Time, x: &K::Root) -> Ordering {
+        let (arc, xi) = (self.arc(id), x.interval());
         if xi.below(&arc.x_span) {
             return Ordering::Greater;
         }
@@ -307,6 +318,11 @@ impl<K: Kernel> Slice<K> {
         let Shape::Graph { rising } = arc.shape else {
             return arc.lo.x.cmp(x);
         };
+        // What is told apart at t is so just after it.
+        let about = self.position_about(id, t.interval());
+        if let Some(order) = told_apart(&about, &xi) {
+            return order;
+        }
         if K::ENCLOSES && arc.ends[0].0.below(&xi) && xi.below(&arc.ends[1].0) {
             filter::settled(Stage::Double);
         } else if *x <= arc.lo.x {
@@ -331,9 +347,13 @@ impl<K: Kernel> Slice<K> {
             return Ordering::Greater;
         }
         match (a.shape, b.shape) {
-            (_, Shape::Level) => return self.cmp_after_const(a, t, &b.lo.x),
-            (Shape::Level, _) => return self.cmp_after_const(b, t, &a.lo.x).reverse(),
+            (_, Shape::Level) => return self.cmp_after_const(ia, t, &b.lo.x),
+            (Shape::Level, _) => return self.cmp_after_const(ib, t, &a.lo.x).reverse(),
             _ => {}
+        }
+        let about = [ia, ib].map(|id| self.position_about(id, t.interval()));
+        if let Some(order) = told_apart(&about[0], &about[1]) {
+            return order;
         }
         if a.curve == b.curve {
             return if a.branch == b.branch {
@@ -460,6 +480,19 @@ impl<K: Kernel> Slice<K> {
             (Shape::Level, Shape::Level) | (Shape::Wall, _) => None,
         }
     }
+}
+
+/// The order of two positions whose enclosures prove it.
+fn told_apart(a: &Interval, b: &Interval) -> Option<Ordering> {
+    let order = if a.below(b) {
+        Ordering::Less
+    } else if b.below(a) {
+        Ordering::Greater
+    } else {
+        return None;
+    };
+    filter::settled(Stage::Double);
+    Some(order)
 }
 
 /// Which side of the horizontal through a point on it an arc lies on just after (or before).

@@ -321,6 +321,36 @@ pub(super) fn apart(f: &Function, g: &Function, chart: Chart, [lo, hi]: [f64; 2]
     lo <= hi && pieces(&forms, lo, hi, HALVINGS)
 }
 
+/// An enclosure of where a function vanishes at t within `span`, where it surely does.
+pub(super) fn position(f: &Function, chart: Chart, t: Interval, span: Interval) -> Interval {
+    let (f0, f1) = (form(&f.0, chart), form(&f.1, chart));
+    let [c, b, a]: Form = std::array::from_fn(|i| f0[i] + t * f1[i]);
+    // There is a root, so what of the radicand is negative is error.
+    let s = (b.square() - twice(twice(a * c))).sqrt();
+    let roots = match b.sign() {
+        // Past the chart where a is small, perhaps zero.
+        Some(sign @ (1 | -1)) => {
+            let q = if sign > 0 { -(b + s) } else { s - b };
+            let far = 2.0 * a.lo.abs().max(a.hi.abs()) < q.lo.abs().min(q.hi.abs());
+            let other = if far {
+                Interval::point(f64::INFINITY)
+            } else {
+                q / twice(a)
+            };
+            [twice(c) / q, other]
+        }
+        _ => [(-b - s) / twice(a), (s - b) / twice(a)],
+    };
+    let within = |x: Interval| Interval {
+        lo: x.lo.max(span.lo),
+        hi: x.hi.min(span.hi),
+    };
+    match roots.map(|x| x.meets(&span).then(|| within(x))) {
+        [Some(x), None] | [None, Some(x)] => x,
+        _ => span,
+    }
+}
+
 /// The arcs of a vertex that moves along an edge: each at one orientation.
 fn levels(patch: &Patch<Enclosed>, end: f64, out: &mut Vec<Seen>) -> Option<()> {
     let mut k = 0;

@@ -11,7 +11,7 @@ use super::predicates::CrossCache;
 use super::scout::{self, Function, Seen};
 use crate::contact::{Chart, Frame, ObstacleShape, Pair, Patch, PawlShape, pairs_within};
 use crate::kernel::{Filtered, Kernel, Position};
-use crate::number::Scalar;
+use crate::number::{Interval, Scalar};
 use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 use std::sync::Mutex;
@@ -28,6 +28,8 @@ pub struct Slice<K: Kernel = Filtered> {
     /// Per patch its C-function in certified doubles, where doubles may settle anything; that of the phase
     /// as it was first run, since only common zeros are looked for.
     rough: Rc<[Function]>,
+    /// Whether that phase ran the other way.
+    turned: bool,
     pub(super) shop: Rc<Shop<K>>,
     pub(super) crossings: Mutex<CrossCache<K>>,
 }
@@ -99,13 +101,13 @@ impl<K: Kernel> Slice<K> {
                 patch_of.push(None);
             }
         }
-        Slice::of(frame, arcs, patch_of, roughs.into(), shop)
+        Slice::of(frame, arcs, patch_of, (roughs.into(), false), shop)
     }
     fn of(
         frame: Frame<K::Num>,
         arcs: Vec<Arc<K>>,
         patch_of: Vec<Option<u32>>,
-        rough: Rc<[Function]>,
+        (rough, turned): (Rc<[Function]>, bool),
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
         let mut by_chart = [Vec::new(), Vec::new()];
@@ -118,6 +120,7 @@ impl<K: Kernel> Slice<K> {
             by_chart,
             patch_of,
             rough,
+            turned,
             shop,
             crossings: Mutex::default(),
         }
@@ -130,7 +133,7 @@ impl<K: Kernel> Slice<K> {
         shop: Rc<Shop<K>>,
     ) -> Slice<K> {
         // With time turned round f₀g₁ − g₀f₁ changes its sign and nothing else.
-        let rough = self.rough.clone();
+        let rough = (self.rough.clone(), !self.turned);
         Slice::of(frame, arcs, self.patch_of.clone(), rough, shop)
     }
     /// Which patch an arc was cut from; None for a limit stop.
@@ -162,6 +165,12 @@ impl<K: Kernel> Slice<K> {
         let (x, y) = (self.arc(a), self.arc(b));
         let range = [x.x_span.lo.max(y.x_span.lo), x.x_span.hi.min(y.x_span.hi)];
         scout::apart(f, g, x.chart, range)
+    }
+    /// The C-function of an arc's patch in doubles, and the time t by its clock.
+    pub(super) fn rough_at(&self, id: ArcId, t: Interval) -> Option<(&Function, Interval)> {
+        let f = self.rough.get(self.patch_of[id as usize]? as usize)?;
+        let end = Scalar::interval(&self.frame.duration);
+        Some((f, if self.turned { end - t } else { t }))
     }
     /// The patch an arc was cut from; None for a limit stop.
     pub fn patch(&self, id: ArcId) -> Option<&Patch<K::Num>> {
@@ -219,21 +228,24 @@ impl<K: Kernel> std::fmt::Debug for Shop<K> {
 }
 
 impl<K: Kernel> Shop<K> {
+    /// A patch, which is kept: friction asks for those that the state follows.
     fn patch(&self, i: u32) -> &Patch<K::Num> {
-        self.patches[i as usize].get_or_init(|| {
-            let b = self.builder.borrow();
-            let (pair, charts) = &self.pairs[i as usize];
-            let patch = pair.patch(&b.frame, &b.pawl, &b.obstacles);
-            Box::new(Patch {
-                charts: *charts,
-                ..patch
-            })
-        })
+        self.patches[i as usize].get_or_init(|| Box::new(self.make(i)))
     }
+    fn make(&self, i: u32) -> Patch<K::Num> {
+        let b = self.builder.borrow();
+        let (pair, charts) = &self.pairs[i as usize];
+        let patch = pair.patch(&b.frame, &b.pawl, &b.obstacles);
+        Patch {
+            charts: *charts,
+            ..patch
+        }
+    }
+    /// The arcs of a patch; the patch itself, a quarter of all that an arc needs, is not kept for them.
     fn made(&self, i: u32) -> &[Arc<K>] {
         self.made[i as usize].get_or_init(|| {
-            let patch = self.patch(i);
-            let arcs = self.builder.borrow_mut().cut(&self.curves, patch);
+            let patch = self.make(i);
+            let arcs = self.builder.borrow_mut().cut(&self.curves, &patch);
             arcs.into()
         })
     }

@@ -39,6 +39,8 @@ pub(super) struct Strip {
     pub(super) glue: Vec<Glue>,
     /// For each upright of an arc whether it is the other side of the one before it.
     pub(super) second: Vec<bool>,
+    /// Names of the ends of each graph, then of each upright: arcs that end in one named point share its instant.
+    pub(super) names: Vec<[u64; 2]>,
     /// What each graph, then each upright stands for.
     pub(super) owners: Vec<Owner>,
     /// Where anything can end on the cut, ascending.
@@ -109,6 +111,7 @@ impl Strip {
             uprights: Vec::new(),
             glue: Vec::new(),
             second: Vec::new(),
+            names: Vec::with_capacity(slice.arcs().len() + 2),
             owners: Vec::with_capacity(slice.arcs().len() + 2),
             stops: vec![zero.clone(), end.clone()],
             at_cut: Vec::new(),
@@ -141,7 +144,11 @@ impl Strip {
             });
             s.owners.push(owner);
         }
-        s.owners.extend(levels);
+        // The borders of the window end where no arc need.
+        let names = [&zero, &end].map(|t| [Time::from(t.clone()).name(); 2]);
+        s.names.extend(names);
+        s.names.extend(levels.iter().map(|(_, names)| *names));
+        s.owners.extend(levels.into_iter().map(|(owner, _)| owner));
         s.stops.retain(|t| *t >= zero && *t <= end);
         s.stops.sort();
         s.stops.dedup();
@@ -188,17 +195,26 @@ impl Strip {
             line: 0,
         });
         self.owners.push(Owner::Arc(id));
+        self.names
+            .push([&arc.lo, &arc.hi].map(|e| e.t.publish().name()));
         Some(())
     }
 
-    fn level<K: Kernel>(&mut self, arc: &Arc<K>, id: ArcId, owners: &mut Vec<Owner>) -> Option<()> {
+    fn level<K: Kernel>(
+        &mut self,
+        arc: &Arc<K>,
+        id: ArcId,
+        owners: &mut Vec<(Owner, [u64; 2])>,
+    ) -> Option<()> {
         let back = arc.chart == Chart::Back;
         let x = arc.lo.x.publish();
         let cut = !back && x.cmp_rat(&Rat::from(-1)).is_eq();
+        let times = [&arc.lo, &arc.hi].map(|e| e.t.publish());
+        let names = [times[0].name(), times[1].name()];
         let mut up = Upright {
             u: root_of(&x, back)?,
-            low: curve_at(&arc.lo.t.publish(), back)?,
-            high: curve_at(&arc.hi.t.publish(), back)?,
+            low: curve_at(&times[0], back)?,
+            high: curve_at(&times[1], back)?,
         };
         if cut {
             let [lo, hi] = [arc.lo.t.decided()?.to_rat(), arc.hi.t.decided()?.to_rat()];
@@ -209,13 +225,13 @@ impl Strip {
             let u = RootOf { c: three, k: 0 };
             self.uprights.push(Upright { u, ..up.clone() });
             self.second.push(false);
-            owners.push(Owner::Arc(id));
+            owners.push((Owner::Arc(id), names));
             self.at_cut.extend([(lo.clone(), id), (hi.clone(), id)]);
             self.stops.extend([lo, hi]);
         }
         self.uprights.push(up);
         self.second.push(cut);
-        owners.push(Owner::Arc(id));
+        owners.push((Owner::Arc(id), names));
         Some(())
     }
 }

@@ -11,9 +11,13 @@ pub(super) struct Filter {
     location: [([Interval; 3], [Interval; 3]); 2],
 }
 
+/// [`Trig::form`] of the coefficients' enclosures.
 pub(super) fn enclose<R: Scalar>(t: &Trig<R>, chart: Chart) -> [Interval; 3] {
-    let f = t.form(chart);
-    [f[0].interval(), f[1].interval(), f[2].interval()]
+    let (c, s, k) = (t.c.interval(), t.s.interval(), t.k.interval());
+    match chart {
+        Chart::Rest => [k + c, s + s, k - c],
+        Chart::Back => [k - c, -(s + s), k + c],
+    }
 }
 
 pub(super) fn horner(f: &[Interval; 3], x: Interval) -> Interval {

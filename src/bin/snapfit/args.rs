@@ -160,7 +160,7 @@ pub(crate) struct Render {
     pub(crate) slice: bool,
     #[command(flatten)]
     pub(crate) which: crate::slice::Which,
-    /// Of a structure: so many pictures of its way, PATH with a number before its ending
+    /// Of a structure only: so many pictures of its way, PATH with a number before its ending
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) frames: Option<u32>,
     /// Of a structure: how much is proven of every linear program
@@ -198,12 +198,12 @@ pub(crate) struct Engine {
     /// Which numbers decide
     #[arg(long, value_enum, default_value = "filtered")]
     pub(crate) arithmetic: Arithmetic,
-    /// With f64: zeros nearer than this are one
-    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = tolerance, default_value = "1e-9")]
-    pub(crate) tolerance: f64,
-    /// With f64: which zeros are taken for one
-    #[arg(long, value_enum, default_value = "names")]
-    pub(crate) identify: Identify,
+    /// With --arithmetic f64: zeros nearer than this are one [default: 1e-9]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = tolerance)]
+    pub(crate) tolerance: Option<f64>,
+    /// With --arithmetic f64: which zeros are taken for one [default: names]
+    #[arg(long, value_enum)]
+    pub(crate) identify: Option<Identify>,
     /// Which library carries long integers
     #[arg(long, value_enum, default_value = "num")]
     pub(crate) backend: Backend,

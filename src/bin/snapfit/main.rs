@@ -149,10 +149,31 @@ fn run_render(args: &Render) -> Result<u8, Failure> {
     };
     output::prepare(&args.common.file, to)?;
     let (name, bytes) = read_bytes(&args.common)?;
+    let which = [
+        ("--phase", args.which.phase.is_some()),
+        ("--pawl", args.which.pawl.is_some()),
+    ];
     if snapfit::flex::is_structure(&name, &bytes) {
+        let engine = &args.engine;
+        let scenes = [
+            ("--slice", args.slice),
+            ("--tolerance", engine.tolerance.is_some()),
+            ("--identify", engine.identify.is_some()),
+        ];
+        let why = "is for scenes, and this is a structure";
+        idle(&scenes, why)?;
+        idle(&which, why)?;
         return flex_render::run_render(args, &name, &bytes, to);
     }
+    let frames = [("--frames", args.frames.is_some())];
+    idle(
+        &frames,
+        "is for structures: of a scene every event is drawn, on one page",
+    )?;
     let file = parse(&args.common, &name, &bytes)?;
+    if !args.slice {
+        idle(&which, "is for --slice: it says which slice is meant")?;
+    }
     if args.slice {
         return slice::run_render(args, &file, to);
     }
@@ -251,6 +272,14 @@ fn simulated(
     Ok((trajectory, document))
 }
 
+/// Refuses options that would do nothing: each with whether it was given.
+fn idle(options: &[(&str, bool)], why: &str) -> Result<(), Failure> {
+    match options.iter().find(|o| o.1) {
+        Some((option, _)) => Err(format!("{option} {why}").into()),
+        None => Ok(()),
+    }
+}
+
 /// When to give up.
 fn deadline(engine: &Engine) -> Option<Instant> {
     let limit = engine.time_limit?;
@@ -281,6 +310,13 @@ fn provenance(engine: &Engine) -> Result<Provenance, Failure> {
         return Err(unbuilt("backend", backend.name(), "num"));
     }
     let arithmetic = arithmetic(engine);
+    if engine.arithmetic != Arithmetic::F64 {
+        let asked = [
+            ("--tolerance", engine.tolerance.is_some()),
+            ("--identify", engine.identify.is_some()),
+        ];
+        idle(&asked, "is for --arithmetic f64: nothing else rounds")?;
+    }
     Ok(Provenance {
         arithmetic: arithmetic.name(),
         method: method(engine).under(&arithmetic),
@@ -302,8 +338,8 @@ fn arithmetic(engine: &Engine) -> motion::Arithmetic {
         Arithmetic::Exact => motion::Arithmetic::Exact,
         Arithmetic::Filtered => motion::Arithmetic::Filtered,
         Arithmetic::F64 => motion::Arithmetic::F64(FloatOptions {
-            tolerance: engine.tolerance,
-            identify: match engine.identify {
+            tolerance: engine.tolerance.unwrap_or(1e-9),
+            identify: match engine.identify.unwrap_or(args::Identify::Names) {
                 args::Identify::None => Identify::None,
                 args::Identify::Times => Identify::Times,
                 args::Identify::Names => Identify::Names,

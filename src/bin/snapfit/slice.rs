@@ -15,10 +15,10 @@ use std::path::Path;
 /// Which slice is meant.
 #[derive(Args, Clone)]
 pub(crate) struct Which {
-    /// The phase, counted from 0
-    #[arg(long, value_name = "K", default_value_t = 0)]
-    pub(crate) phase: usize,
-    /// The pawl [default: the first]
+    /// Of a slice: the phase, counted from 0 [default: the first]
+    #[arg(long, value_name = "K")]
+    pub(crate) phase: Option<usize>,
+    /// Of a slice: the pawl [default: the first]
     #[arg(long, value_name = "NAME")]
     pub(crate) pawl: Option<String>,
 }
@@ -62,9 +62,10 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
         face: engine.face,
         ..Options::default()
     };
+    let phase = which.phase.unwrap_or(0);
     let mut found = None;
     let trajectory = slices(scene, &options, &mut |s| {
-        if (s.phase, s.pawl) == (which.phase, pawl) {
+        if (s.phase, s.pawl) == (phase, pawl) {
             found = Some(s);
         }
     })
@@ -72,7 +73,7 @@ fn seen(file: &SceneFile, engine: &Engine, which: &Which) -> Result<(Seen, Traje
     let found = found.ok_or_else(|| {
         format!(
             "--phase {}: the plan ran through {} phase{}, counted from 0",
-            which.phase,
+            phase,
             trajectory.phases.len(),
             if trajectory.phases.len() == 1 {
                 ""

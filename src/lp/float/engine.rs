@@ -13,6 +13,8 @@ use crate::lp::lu::{Lu, factorise};
 pub(crate) const REFRESH: usize = 64;
 /// Feasibility tolerances of values and of reduced costs: first, and for the finish.
 const TOLERANCES: [f64; 3] = [1e-7, 1e-9, 1e-12];
+/// Wrong reduced costs that are left to exact arithmetic where floating point gives up.
+const FEW: usize = 16;
 /// Relative size of the random widening of bounds.
 const WIDTH: f64 = 1e-6;
 /// Smallest pivot.
@@ -356,6 +358,14 @@ impl<'a> Engine<'a> {
             Status::Upper => self.d[v] > self.tolerance,
             Status::Zero => self.d[v].abs() > self.tolerance,
         }
+    }
+
+    /// Whether the basis is feasible and optimal but for a few reduced costs: exact arithmetic
+    /// needs fewer pivots from here than floating point needs iterations from anywhere else.
+    pub(crate) fn nearly_optimal(&mut self) -> bool {
+        self.restore();
+        let attractive = (0..self.status.len()).filter(|&v| self.attractive(v));
+        self.infeasibility() == 0.0 && attractive.count() <= FEW
     }
 
     /// The program's own costs and bounds, and everything that follows from the basis.

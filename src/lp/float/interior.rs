@@ -10,6 +10,7 @@ use super::program::Program;
 use crate::lp::basis::Status;
 use crate::lp::budget::{Budget, Stage};
 use crate::lp::field::Double;
+use crate::lp::lift::ldexp;
 use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -24,8 +25,22 @@ const REPLACEMENTS: usize = 12;
 /// A pivot below this makes a column one that depends on the others.
 const DEPENDENT: f64 = 1e-7;
 
-/// For every variable of `direct` how clearly it is off its bounds at the optimum.
-pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<Vec<f64>> {
+/// For every variable of `direct` how clearly it is off its bounds at the optimum. Where the noise
+/// made the program unbounded, which it can by way of free columns, it is done without.
+pub(crate) fn weights(direct: &Program, budget: &Budget) -> Option<Vec<f64>> {
+    let unbounded = |s: &Option<SolverStatus>| *s == Some(SolverStatus::DualInfeasible);
+    match weights_with(direct, 1.0, budget) {
+        Err(status) if unbounded(&status) => weights_with(direct, 0.0, budget).ok(),
+        other => other.ok(),
+    }
+}
+
+/// The same with a share of the noise, or the status with which the solver failed.
+fn weights_with(
+    direct: &Program,
+    noise: f64,
+    budget: &Budget,
+) -> Result<Vec<f64>, Option<SolverStatus>> {
     budget.report(Stage::Interior, 0);
     let p = direct;
     let total = p.n + p.m;
@@ -67,13 +82,21 @@ pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<V
         start.push(index.len());
     }
     let largest = p.cost.iter().fold(0.0f64, |m, c| m.max(c.abs())).max(1e-6);
-    let cost: Vec<f64> = p
-        .cost
-        .iter()
-        .map(|c| c + noise * COST_NOISE * largest * (2.0 * random.next_random() - 1.0))
-        .collect();
+    let cost = p.cost.iter().enumerate().map(|(j, c)| {
+        // Where a column has one bound only, the noise must not lure it away from there: that can
+        // make a bounded program unbounded.
+        let share = match (p.lower[j] > f64::NEG_INFINITY, p.upper[j] < f64::INFINITY) {
+            (true, false) => random.next_random(),
+            (false, true) => -random.next_random(),
+            _ => 2.0 * random.next_random() - 1.0,
+        };
+        c + noise * COST_NOISE * largest * share
+    });
+    // The solver takes sizes about 1 for granted; powers of two change no order of the ratios.
+    let (price, length) = (unit(p.cost.iter().copied()), unit(rows.iter().map(|r| r.2)));
+    let cost: Vec<f64> = cost.map(|c| c * price).collect();
     let a = CscMatrix::new(rows.len(), p.n, start, index, value);
-    let b: Vec<f64> = rows.iter().map(|r| r.2).collect();
+    let b: Vec<f64> = rows.iter().map(|r| r.2 * length).collect();
     let cones = [
         SupportedConeT::ZeroConeT(equations.len()),
         SupportedConeT::NonnegativeConeT(sides.len()),
@@ -89,9 +112,10 @@ pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<V
         .tol_feas(1e-10)
         .max_iter(200)
         .build()
-        .ok()?;
+        .map_err(|_| None)?;
     let quadratic = CscMatrix::zeros((p.n, p.n));
-    let mut solver = DefaultSolver::new(&quadratic, &cost, &a, &b, &cones, settings).ok()?;
+    let mut solver =
+        DefaultSolver::new(&quadratic, &cost, &a, &b, &cones, settings).map_err(|_| None)?;
     solver.solve();
     let usable = matches!(
         solver.solution.status,
@@ -102,7 +126,7 @@ pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<V
             | SolverStatus::NumericalError
     );
     if !usable {
-        return None;
+        return Err(Some(solver.solution.status));
     }
     // Distance over price, the smaller of the two sides.
     let mut out = vec![f64::INFINITY; total];
@@ -115,7 +139,15 @@ pub(crate) fn weights(direct: &Program, noise: f64, budget: &Budget) -> Option<V
         };
         out[v] = out[v].min(ratio);
     }
-    Some(out)
+    Ok(out)
+}
+
+/// The power of two that brings numbers to 1 in the geometric mean, those that are zero apart.
+fn unit(numbers: impl Iterator<Item = f64>) -> f64 {
+    let exponents = numbers
+        .filter(|v| *v != 0.0)
+        .map(|v| v.abs().log2().ceil() as i64);
+    ldexp(1.0, super::program::centre(exponents, 0))
 }
 
 /// Statuses with the m heaviest variables of `program` basic; `weights` are those of `direct`,

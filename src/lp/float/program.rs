@@ -120,14 +120,20 @@ impl Program {
         let (scale, scale_exponent) = mantissa(&p.cost_scale.abs());
         let place = |k: usize| if k < p.n { -exponents[k] } else { exponents[k] };
         let both = || (0..p.n + p.m).flat_map(|k| [(k, &p.lower[k]), (k, &p.upper[k])]);
-        let bound_shift = centre(both().filter_map(|(k, v)| {
-            let v = v.as_ref().filter(|v| !v.is_zero())?;
-            Some(v.bits() as i64 - bound_exponent + place(k))
-        }));
-        let cost_shift = centre((0..p.n).filter_map(|j| {
-            let c = Some(&p.cost[j]).filter(|c| !c.is_zero())?;
-            Some(c.bits() as i64 - scale_exponent + exponents[j])
-        }));
+        let bound_shift = centre(
+            both().filter_map(|(k, v)| {
+                let v = v.as_ref().filter(|v| !v.is_zero())?;
+                Some(v.bits() as i64 - bound_exponent + place(k))
+            }),
+            NEAR,
+        );
+        let cost_shift = centre(
+            (0..p.n).filter_map(|j| {
+                let c = Some(&p.cost[j]).filter(|c| !c.is_zero())?;
+                Some(c.bits() as i64 - scale_exponent + exponents[j])
+            }),
+            NEAR,
+        );
         let limit = |v: &Option<crate::number::Int>, k: usize, infinite: f64| match v {
             None => infinite,
             Some(v) => {
@@ -304,8 +310,13 @@ impl Program {
 /// Exponents are shifted no farther up than to this one.
 const HIGHEST: i64 = 20;
 
-/// The shift that brings numbers of these binary exponents to about 1 in the geometric mean.
-fn centre(exponents: impl Iterator<Item = i64>) -> i64 {
+/// Within this distance of 1 sizes are left as the model has them, which serves floating point
+/// better than any norm.
+const NEAR: i64 = 16;
+
+/// The shift that brings numbers of these binary exponents to about 1 in the geometric mean,
+/// where they are farther from there than `near`.
+pub(super) fn centre(exponents: impl Iterator<Item = i64>, near: i64) -> i64 {
     let (mut sum, mut count, mut high) = (0i128, 0i128, i64::MIN);
     for e in exponents {
         sum += i128::from(e);
@@ -315,7 +326,11 @@ fn centre(exponents: impl Iterator<Item = i64>) -> i64 {
     if count == 0 {
         return 0;
     }
-    (-(sum.div_euclid(count)) as i64).min(HIGHEST - high)
+    let mean = sum.div_euclid(count) as i64;
+    if mean.abs() <= near {
+        return 0;
+    }
+    (-mean).min(HIGHEST - high)
 }
 
 fn mantissa_exponent(matrix: &crate::lp::problem::Matrix, e: usize) -> i64 {
@@ -344,17 +359,20 @@ mod tests {
         Program::new(&Problem::new(&model).expect("a small model"))
     }
 
-    /// What tolerances are measured against must not depend on the units of the model.
+    /// What tolerances are measured against must not depend on the units of the model, but for
+    /// those that are near 1 as they are.
     #[test]
     fn units_do_not_matter() {
-        let plain = program(0, 0);
-        for (cost, bound) in [(60, 0), (0, 90), (300, 40)] {
+        let near = program(3, 5);
+        assert_eq!((near.cost_shift, near.bound_shift), (0, 0));
+        let plain = program(30, 30);
+        for (cost, bound) in [(60, 30), (30, 90), (300, 40)] {
             let other = program(cost, bound);
             assert_eq!(plain.cost, other.cost);
             assert_eq!(plain.lower, other.lower);
             assert_eq!(plain.upper, other.upper);
             let (a, b) = (plain.unscaled_objective(1.0), other.unscaled_objective(1.0));
-            assert_eq!(a, b * 2f64.powi((cost + bound) as i32));
+            assert_eq!(a, b * 2f64.powi((cost + bound - 60) as i32));
         }
     }
 }

@@ -56,10 +56,10 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
             let prices = engine.prices();
             point = program.unscaled(problem, &engine.x[..program.n], &prices);
         }
-        ending != Ending::Stuck
+        ending != Ending::Stuck || engine.nearly_optimal()
     };
-    let from_interior = |noise: f64| {
-        let weights = interior::weights(&direct, noise, budget)?;
+    let from_interior = || {
+        let weights = interior::weights(&direct, budget)?;
         Some(Engine::new(
             &program,
             interior::heaviest(&program, &weights),
@@ -76,7 +76,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     }
     if !done
         && large
-        && let Some(mut engine) = from_interior(1.0)
+        && let Some(mut engine) = from_interior()
     {
         engine.most = program.m as u64 + 1000;
         let ending = engine.optimise(false, budget);
@@ -90,7 +90,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     }
     if !done
         && !large
-        && let Some(mut engine) = from_interior(1.0)
+        && let Some(mut engine) = from_interior()
     {
         engine.most = 4 * sizes + 1000;
         let ending = engine.optimise(false, budget);

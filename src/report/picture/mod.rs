@@ -14,7 +14,7 @@ mod structure;
 pub(crate) mod svg;
 
 use super::json::ResultDocument;
-use super::words::{headline, reason};
+use super::words::{UNPROVEN, headline, reason};
 use crate::scene::Scene;
 pub use slice::{SlicePicture, slice_svg};
 use stage::Stage;
@@ -46,6 +46,10 @@ pub fn svg(scene: &Scene, result: &ResultDocument) -> String {
             y += 18.0;
             page.text(MARGIN, y, 12.5, MUTED, "start", false, &line);
         }
+    }
+    if result.arithmetic == "f64" {
+        y += 18.0;
+        page.text(MARGIN, y, 12.5, MUTED, "start", false, UNPROVEN);
     }
     y += 20.0;
     y = panels::draw(&mut page, &stage, &moments, [MARGIN, y, inner]);

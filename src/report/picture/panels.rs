@@ -10,7 +10,6 @@ use super::stage::Stage;
 use super::svg::{CONTACT, INK, MUTED, Point, RULE, Svg, clipped};
 use crate::report::json::{EventDocument, ResultDocument};
 use crate::report::words::digits;
-use std::collections::BTreeMap;
 
 /// Most panels that are drawn.
 const MOST: usize = 16;
@@ -105,21 +104,8 @@ pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Moments {
             }),
         }
     }
-    // The first of its kind tells more than the tenth.
-    let mut seen: BTreeMap<Vec<(usize, &str)>, i64> = BTreeMap::new();
-    let mut rank: Vec<i64> = Vec::new();
-    for g in &groups {
-        let kinds = g.events.iter().map(|(pawl, e)| (*pawl, e.kind)).collect();
-        let before = seen.entry(kinds).or_insert(0);
-        rank.push(4 * i64::from(g.weight) - 3 * *before);
-        *before += 1;
-    }
-    let mut ranked: Vec<usize> = (0..groups.len())
-        .filter(|&i| groups[i].weight > 0)
-        .collect();
-    let worth = ranked.len();
-    ranked.sort_by_key(|&i| (std::cmp::Reverse(rank[i]), i));
-    ranked.truncate(MOST);
+    let mut ranked = spread(&groups);
+    let worth = groups.iter().filter(|g| g.weight > 0).count();
     ranked.sort_unstable();
     let chosen = ranked.into_iter().enumerate();
     let chosen = chosen.map(|(k, i)| {
@@ -130,6 +116,48 @@ pub(super) fn moments(stage: &Stage, result: &ResultDocument) -> Moments {
         chosen: chosen.collect(),
         of: worth,
     }
+}
+
+/// The instants that tell most: the weightiest, of each kind the first rather than the tenth, and
+/// of equals the one farthest in time from those already chosen, so that a long plan is seen whole.
+fn spread(groups: &[Group<'_>]) -> Vec<usize> {
+    let kinds = |g: &Group<'_>| -> Vec<(usize, &str)> {
+        let events = g.events.iter();
+        events.map(|(pawl, e)| (*pawl, e.kind)).collect()
+    };
+    let mut kind_of: Vec<Vec<(usize, &str)>> = Vec::new();
+    let which: Vec<usize> = groups
+        .iter()
+        .map(|g| {
+            let own = kinds(g);
+            kind_of.iter().position(|k| *k == own).unwrap_or_else(|| {
+                kind_of.push(own);
+                kind_of.len() - 1
+            })
+        })
+        .collect();
+    let mut taken = vec![0i64; kind_of.len()];
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut left: Vec<usize> = (0..groups.len())
+        .filter(|&i| groups[i].weight > 0)
+        .collect();
+    while chosen.len() < MOST && !left.is_empty() {
+        let rank = |i: usize| 4 * i64::from(groups[i].weight) - 3 * taken[which[i]];
+        let apart = |i: usize| {
+            let gaps = chosen.iter().map(|&c| (groups[c].t - groups[i].t).abs());
+            gaps.fold(f64::INFINITY, f64::min)
+        };
+        // The first of equals, where nothing is chosen yet.
+        let best = left.iter().copied().reduce(|a, b| {
+            let order = rank(b).cmp(&rank(a)).then(apart(b).total_cmp(&apart(a)));
+            if order.is_gt() { b } else { a }
+        });
+        let Some(best) = best else { break };
+        taken[which[best]] += 1;
+        chosen.push(best);
+        left.retain(|&i| i != best);
+    }
+    chosen
 }
 
 fn letter(k: usize) -> String {
@@ -250,10 +278,21 @@ fn windows(stage: &Stage, moments: &[Moment]) -> Vec<Window> {
     };
     let offsets: Vec<Point> = moments.iter().map(|m| stage.offset(m.phase, m.t)).collect();
     let mut near = around(moments.iter().flat_map(|m| outline(m, [0.0, 0.0])));
-    // As much of the root as does not dwarf the pawls.
+    // The root whole where it does not dwarf the pawls, else as much of it as is near them.
     let [w, h] = size(&near);
     let reach = 0.3 * w.max(h);
     if let Some(root) = &stage.root {
+        let whole = around(
+            root.iter()
+                .copied()
+                .chain([[near[0], near[1]], [near[2], near[3]]]),
+        );
+        let [wide, high] = size(&whole);
+        let reach = if wide.max(high) <= 2.5 * w.max(h) {
+            wide.max(high)
+        } else {
+            reach
+        };
         let frame = [
             near[0] - reach,
             near[1] - reach,

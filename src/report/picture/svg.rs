@@ -117,6 +117,17 @@ impl Svg {
         ));
     }
 
+    /// A line of text that reads upwards, about its middle.
+    pub(crate) fn upward(&mut self, [x, y]: Point, size: f64, colour: &str, text: &str) {
+        self.tag(format_args!(
+            "<g transform=\"translate({} {}) rotate(-90)\">",
+            n(x),
+            n(y)
+        ));
+        self.text(0.0, 0.0, size, colour, "middle", false, text);
+        self.end();
+    }
+
     /// A rectangle by its corner, width and height.
     pub(crate) fn rect(&mut self, [x, y, w, h]: [f64; 4], fill: &str, stroke: &str) {
         self.tag(format_args!(
