@@ -194,7 +194,6 @@ impl Tight {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::flex::FlexOptions;
     use crate::flex::branch;
     use crate::flex::generate::generate;
