@@ -440,7 +440,7 @@ mod tests {
             if round % 2 == 1 {
                 p = &p * (line.scale(&Int::one().shl(k + 7)) - Poly::constant(Int::one()));
             }
-            p = p * Poly::new(coefficients(&mut seed, 3, 20));
+            p *= Poly::new(coefficients(&mut seed, 3, 20));
             if p.degree().is_none_or(|d| d < 4) || p.coeff(0).is_zero() {
                 continue;
             }
