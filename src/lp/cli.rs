@@ -43,7 +43,7 @@ pub struct LpArgs {
     #[arg(short, long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Show no progress on a terminal
-    #[arg(long)]
+    #[arg(short, long)]
     pub quiet: bool,
 }
 
