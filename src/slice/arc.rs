@@ -26,6 +26,9 @@ pub struct Curve<K: Kernel = Filtered> {
     pub(super) rp: [K::Poly; 2],
     /// Q per chart with the common factor removed.
     pub(super) rq: [K::Poly; 2],
+    /// Whether P and Q have a common root: the curve then holds a whole level besides its graph, and to lie
+    /// on the curve is not to lie on the graph.
+    pub(super) factored: bool,
 }
 
 impl<K: Kernel> Curve<K> {

@@ -151,6 +151,7 @@ impl<K: Kernel> Builder<K> {
             q,
             rp: [rp0, rp1],
             rq: [rq0, rq1],
+            factored: common,
         });
         self.curve_ids.insert(key, id);
         Some((id, flip))
@@ -544,7 +545,13 @@ impl<K: Kernel> Builder<K> {
         let q = [K::zero_coef(), K::zero_coef(), K::zero_coef()];
         let rp = Chart::BOTH.map(|c| in_chart::<K>(&p, c));
         let rq = [K::Poly::zero(), K::Poly::zero()];
-        let curve = curves.add(Curve { p, q, rp, rq });
+        let curve = curves.add(Curve {
+            p,
+            q,
+            rp,
+            rq,
+            factored: false,
+        });
         let x = K::Root::of(x);
         let end = |t: K::Num| End {
             x: x.clone(),

@@ -135,9 +135,10 @@ impl<K: Kernel> Slice<K> {
         }
     }
 
-    /// Whether the point is known to lie on the arc's curve.
+    /// Whether the point is known to lie on the arc's graph. A point of the level that a curve holds besides
+    /// its graph is named on the curve at every time, and proves nothing.
     fn lies_on(&self, arc: &Arc<K>, z: &Point<K>) -> bool {
-        let known = z.on.contains(&arc.curve);
+        let known = z.on.contains(&arc.curve) && !self.curve(arc.curve).factored;
         if known {
             filter::settled(Stage::Name);
         }
