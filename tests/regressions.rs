@@ -4,7 +4,7 @@
 #[path = "common/hand.rs"]
 mod hand;
 
-use snapfit::motion::{EventKind, OutcomeKind, Trajectory};
+use snapfit::motion::{Arithmetic, EventKind, Options, OutcomeKind, Trajectory, simulate};
 use snapfit::number::Rat;
 use snapfit::scene::read_scene;
 
@@ -148,4 +148,39 @@ reverse = true
             .any(|e| e.kind == EventKind::SlidingCollision && e.phase == 1)
     };
     assert!(t.pawls.iter().any(met));
+}
+
+/// The edge of p1 that turns through the hinge's own line has a C-function with a level besides its graph.
+/// At t = 6 the state stands on that level, at another time than the graph passes it, and the graph has no
+/// part there. The reference kernel, which has no doubles to tell the times apart, once took it to have one.
+#[test]
+fn a_level_is_not_the_graph_of_its_curve() {
+    let file = read_scene(
+        "scene.toml",
+        r#"
+[scene]
+name = "random-7503251"
+[[obstacle]]
+name = "o0"
+vertices = [["5", "-5"], ["2", "-1"], ["6", "-3"]]
+[[pawl]]
+name = "p1"
+hinge = ["5", "3"]
+vertices = [["4", "0"], ["7", "0"], ["7", "2"], ["4", "2"]]
+[[motion]]
+velocity = ["0", "-1"]
+duration = "11/2"
+[[motion]]
+reverse = true
+"#,
+    )
+    .unwrap();
+    for arithmetic in [Arithmetic::Filtered, Arithmetic::Exact] {
+        let options = Options {
+            arithmetic,
+            ..Options::default()
+        };
+        let t = simulate(file.scene(), &options).unwrap();
+        assert_eq!(t.outcome.kind, OutcomeKind::Completed, "{arithmetic:?}");
+    }
 }
