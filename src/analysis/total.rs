@@ -5,7 +5,7 @@
 //! when; the proof for the whole arc is that of `cells`, which follows every successor in
 //! certified intervals. An arc that resists is halved, down to a bound on depth and time. One exact
 //! way out settles the class, which is then `none`; what the rest of the circle does is told all
-//! the same ([`super::pieces`]).
+//! the same (`pieces`).
 
 use super::classify::{Direction, Verdict, direction};
 use super::escape::{Ground, Start};
