@@ -26,8 +26,11 @@ const GAP: f64 = 2.5e-10;
 const POINT_BITS: i64 = 62;
 const MENDED_BITS: i64 = 100;
 const PRICE_BITS: i64 = 100;
-/// Corrections of the prices.
-const CORRECTIONS: usize = 6;
+/// Corrections of the point and of the prices.
+const CORRECTIONS: usize = 4;
+const PRICE_CORRECTIONS: usize = 16;
+/// A correction leaves a price at least 2 to the power of minus this of itself.
+const KEPT: u64 = 3;
 /// Margins that are tried, as powers of 1/2.
 const MARGINS: std::ops::RangeInclusive<u32> = 2..=9;
 
@@ -60,26 +63,9 @@ pub(crate) fn enclose(model: &Model, problem: &Problem, budget: &Budget) -> Opti
         return None;
     }
     let (x, y) = program.unscaled(problem, &central.x, &central.prices());
-    let (point, value) = inside(model, problem, &program, &central, &x)?;
+    let (point, value) = inside(model, problem, &program, &mut central, &x)?;
     let mut prices = rounded(&y, PRICE_BITS)?;
-    let mut rest = Remainder::new(model);
-    let mut best = f64::INFINITY;
-    for _ in 0..CORRECTIONS {
-        budget.check().ok()?;
-        let r = rest.of(&prices);
-        let (scaled, size) = program.scaled_costs(problem, &r);
-        if size == 0.0 || size > 0.25 * best {
-            break;
-        }
-        best = size;
-        let change = central.mend(&scaled);
-        let change = program.unscaled(problem, &central.x, &change).1;
-        for (y, d) in prices.values.iter_mut().zip(&change) {
-            if *d != 0.0 {
-                *y += &fixed(*d, prices.places);
-            }
-        }
-    }
+    correct(model, problem, &program, &mut central, &mut prices, budget)?;
     let dual = prices.vector();
     let near = Near::new(model, Prices::new(model, &dual).ok()?).ok()?;
     let order: Vec<u32> = central.order().to_vec();
@@ -104,12 +90,55 @@ pub(crate) fn enclose(model: &Model, problem: &Problem, budget: &Budget) -> Opti
     None
 }
 
+/// Corrects prices until they miss the costs of the free columns by next to nothing.
+fn correct(
+    model: &Model,
+    problem: &Problem,
+    program: &Program,
+    central: &mut Central<'_>,
+    prices: &mut Fixed,
+    budget: &Budget,
+) -> Option<()> {
+    let rest = Remainder::new(model);
+    let (mut best, mut held_back) = (f64::INFINITY, false);
+    let nothing = vec![0.0; problem.n];
+    for round in 0..PRICE_CORRECTIONS {
+        budget.check().ok()?;
+        let (scaled, size) = program.scaled_costs(problem, &rest.of(prices));
+        if round == 0 {
+            central.weigh_prices();
+        }
+        // Doubles gain several digits in each round, until the last digit held is reached.
+        if size == 0.0 || !held_back && size > 0.1 * best {
+            break;
+        }
+        (best, held_back) = (best.min(size), false);
+        let change = program
+            .unscaled(problem, &nothing, &central.mend(&scaled))
+            .1;
+        for ((y, d), r) in prices.values.iter_mut().zip(&change).zip(&model.rows) {
+            if *d == 0.0 {
+                continue;
+            }
+            let mut there = &*y + &fixed(*d, prices.places);
+            // A price must not change its sign; what that costs the correction is for the next.
+            let one_sided = r.range.lower.is_none() || r.range.upper.is_none();
+            let kept = y.shr(KEPT);
+            if one_sided && (&there - &kept).sign() * y.sign() <= 0 {
+                (there, held_back) = (kept, true);
+            }
+            *y = there;
+        }
+    }
+    Some(())
+}
+
 /// A feasible point in short rationals near the one in doubles, and its objective.
 fn inside(
     model: &Model,
     problem: &Problem,
     program: &Program,
-    central: &Central<'_>,
+    central: &mut Central<'_>,
     x: &[f64],
 ) -> Option<(Vector, Rat)> {
     let point = rounded(x, POINT_BITS)?.vector();
@@ -220,7 +249,7 @@ impl Remainder {
     }
 
     /// c − Aᵀy in the free columns as doubles, zero in the others.
-    fn of(&mut self, y: &Fixed) -> Vec<f64> {
+    fn of(&self, y: &Fixed) -> Vec<f64> {
         let mut out = vec![0.0; self.all];
         for (j, scale, cost, entries) in &self.columns {
             let mut sum = cost.shl(y.places as u64);

@@ -222,9 +222,6 @@ impl<'a> Central<'a> {
             }
             let met = norm(&rp) <= EXACT * size_h && norm(&rd) <= EXACT * size_c;
             if met && product <= gap(objective) {
-                // Made ready for what is mended afterwards.
-                let weights = self.weights();
-                self.factorise(&weights);
                 return true;
             }
             self.steps += 1;
@@ -321,30 +318,35 @@ impl<'a> Central<'a> {
         y
     }
 
-    /// A change of the rows' prices, each small beside the price itself, that lowers the columns'
-    /// reduced costs by r, as well as doubles can.
+    /// Makes ready for [`Central::mend`], with prices as weights: the method's own, prices over
+    /// slacks, differ so much that factors in doubles lose what is small among them.
+    pub(crate) fn weigh_prices(&mut self) {
+        let weights = self.z.clone();
+        self.factorise(&weights);
+    }
+
+    /// A change of the rows' prices, small where the prices are, that lowers the columns' reduced
+    /// costs by r, as well as doubles can.
     pub(crate) fn mend(&self, r: &[f64]) -> Vec<f64> {
         let mut u = r.to_vec();
         self.factor.solve(&mut u);
         let along = self.along(&u);
-        let t: Vec<f64> = along
-            .iter()
-            .zip(self.weights())
-            .map(|(a, w)| a * w)
-            .collect();
+        let t: Vec<f64> = along.iter().zip(&self.z).map(|(a, z)| a * z).collect();
         self.signed(&t)
     }
 
     /// A change of the point that brings its slacks to those of the method, as nearly as can be
     /// where slacks are small. `room` is how far columns and rows truly are from
     /// their lower and upper bounds.
-    pub(crate) fn mend_point(&self, room: &[[f64; 2]]) -> Vec<f64> {
+    pub(crate) fn mend_point(&mut self, room: &[[f64; 2]]) -> Vec<f64> {
+        let weights = self.weights();
+        self.factorise(&weights);
         let short = self
             .sides
             .iter()
             .zip(&self.s)
             .map(|(k, s)| s - room[k.variable][usize::from(k.sign < 0.0)]);
-        let t: Vec<f64> = short.zip(self.weights()).map(|(d, w)| d * w).collect();
+        let t: Vec<f64> = short.zip(&weights).map(|(d, w)| d * w).collect();
         let mut u = self.against(&t);
         self.factor.solve(&mut u);
         u
