@@ -109,7 +109,10 @@ pub(crate) struct Kernel {
     /// All others, of the few pairs whose crossings were isolated exactly.
     pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
     /// Numbers with equations of low degree in which several pairs were seen to meet; see `add_hub`.
-    pub(super) hubs: Vec<NumId>,
+    /// With a serial number each; and up to which one a number was held against them.
+    pub(super) hubs: Vec<(NumId, u32)>,
+    pub(super) hubs_made: u32,
+    pub(super) hubs_tried: FastMap<NumId, u32>,
     /// Which curves are known to meet where.
     pub(super) places: Places,
     pub(crate) stats: Stats,

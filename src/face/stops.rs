@@ -300,7 +300,8 @@ impl Tracer<'_> {
             }
             pencil = None;
         }
-        let pencil_id = pencil.map_or(NONE, |p| p.0);
+        let innermost = pencil.map_or(NONE, |p| p.0);
+        let outermost = pencil.map_or(NONE, |p| p.1.root);
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
@@ -309,7 +310,6 @@ impl Tracer<'_> {
         let me = &items[item as usize];
         let busy = self.busy.get(&item);
         let (mut few, mut tests, mut wasted) = (true, 0, 0);
-        let own = self.pencil_of[item as usize];
         let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
@@ -327,11 +327,12 @@ impl Tracer<'_> {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
                 let vain = lo > hi
-                    || if own != NONE && self.pencil_of[b as usize] == own {
-                        k.miss_beside(c, d, lo, hi, self.pencils[own as usize].known())
-                    } else {
-                        k.miss(c, d, lo, hi)
-                            || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                    || match self.pencils.get(self.common_pencil(item, b) as usize) {
+                        Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
+                        None => {
+                            k.miss(c, d, lo, hi)
+                                || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                        }
                     };
                 if vain {
                     wasted += 1;
@@ -342,13 +343,17 @@ impl Tracer<'_> {
             few = near.len() <= most;
             few
         };
-        let pencil = (pencil_id != NONE).then(|| &self.pencils[pencil_id as usize]);
-        if let (Some(pencil), Carrier::Graph(c)) = (pencil, me.carrier) {
-            pencil.query(k, c, range, &mut consider);
+        let (mut inner, mut p) = (NONE, innermost);
+        while let (Some(pencil), Carrier::Graph(c)) = (self.pencils.get(p as usize), me.carrier) {
+            pencil.query(k, c, range, |b| {
+                inner != NONE && self.in_pencil(b, inner) || consider(b)
+            });
+            (inner, p) = (p, pencil.parent);
         }
+        let outer = self.pencils.get(outermost as usize);
         if let Some(Pencil {
             rest: Some(rest), ..
-        }) = pencil
+        }) = outer
         {
             rest.query(hull, &mut consider);
         } else {
@@ -365,7 +370,7 @@ impl Tracer<'_> {
                     }
             };
             self.tree.descend(wanted, |b| {
-                pencil_id != NONE && self.pencil_of[b as usize] == pencil_id || consider(b)
+                outermost != NONE && self.in_pencil(b, outermost) || consider(b)
             });
         }
         self.stamp = stamp;
