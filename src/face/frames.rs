@@ -100,6 +100,15 @@ impl Kernel {
         }
     }
 
+    /// Where a number lies, roughly: a double for it, or for the frame that it was seen from and its distance.
+    pub(super) fn rough(&mut self, x: NumId) -> [f64; 2] {
+        let x = self.find(x);
+        match self.local.get(&x) {
+            Some(&(f, d)) => [self.frames[f as usize].lo, d.v],
+            None => [self.enclosure(x).0, 0.0],
+        }
+    }
+
     /// Equal, if both are proven to be the number that a frame was made for, whose equation is known if it has one
     /// of low degree.
     fn are_owner(&mut self, x: NumId, y: NumId, f: u32) -> Option<Ordering> {

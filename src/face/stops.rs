@@ -92,6 +92,9 @@ fn crowd(depth: usize) -> usize {
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
 
+/// More hits than this are brought roughly into order first.
+const MANY: usize = 24;
+
 /// How many items a search may find in vain, on average, before bands are made; and how many in all before that
 /// is asked.
 const VAIN: u64 = 16;
@@ -495,8 +498,11 @@ impl Tracer<'_> {
                 }
             }
         }
-        let k = &mut *self.k;
         let vertical = matches!(me.carrier, Carrier::Vertical(..));
+        if !vertical && hits.len() > MANY {
+            self.presort(&mut hits);
+        }
+        let k = &mut *self.k;
         let mut order = |a: &Hit, b: &Hit| {
             if vertical {
                 k.cmp_at(a.c, b.c, a.x)
@@ -530,6 +536,23 @@ impl Tracer<'_> {
         let w = &mut self.windows[w as usize];
         w.stops = start as u32;
         w.stop_count = (self.stops.len() - start) as u32;
+    }
+
+    /// Brings many hits nearly into order by what is known of their places in doubles: a sort that goes by exact
+    /// order then hardly asks more than whether neighbours are in order.
+    fn presort(&mut self, hits: &mut [Hit]) {
+        // Neighbours are asked for once, so that those too near for doubles are seen from a frame.
+        for i in 1..hits.len() {
+            self.k.cmp(hits[i - 1].x, hits[i].x);
+        }
+        hits.sort_by_cached_key(|h| {
+            let key = self.k.rough(h.x);
+            key.map(|v| {
+                // As `total_cmp` orders doubles.
+                let bits = v.to_bits() as i64;
+                bits ^ ((bits >> 63) as u64 >> 1) as i64
+            })
+        });
     }
 
     /// The vertex where an item has these hits, all at one point.
