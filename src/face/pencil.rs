@@ -26,13 +26,17 @@ struct Chart {
     core: Option<Core>,
 }
 
-/// Arcs through a point, in the plane where it is blown up.
+/// Arcs through a point, in the plane where it is blown up. Those of them that touch there, or pass through a second
+/// point together, may be a pencil of their own within it.
 pub(super) struct Pencil {
     chart: Chart,
+    /// The pencil within which this one is, made earlier; and the outermost one.
+    pub(super) parent: u32,
+    pub(super) root: u32,
     /// The members there.
     tree: Tree,
     count: usize,
-    /// The index of all others, if the members are a large part of all items.
+    /// The index of all others, if this is an outermost pencil and its members are a large part of all items.
     pub(super) rest: Option<Tree>,
 }
 
@@ -192,10 +196,25 @@ impl Tracer<'_> {
         let Some(order) = order else {
             return;
         };
+        let close: Vec<u32> = members
+            .iter()
+            .zip(&orders)
+            .filter(|m| *m.1 >= order)
+            .map(|m| *m.0)
+            .collect();
+        let mut parent = old;
+        if order > 1 && members.len() - close.len() > FEW {
+            // The others cross those that touch.
+            let mut around = chart.clone();
+            around.at.push((x, 1));
+            members.retain({
+                let mut orders = orders.iter();
+                move |_| orders.next().is_some_and(|&o| o >= 1)
+            });
+            parent = self.add_pencil(around, &members, parent);
+        }
         chart.at.push((x, order));
-        let mut orders = orders.iter();
-        members.retain(|_| orders.next().is_some_and(|&o| o >= order));
-        self.add_pencil(chart, &members);
+        self.add_pencil(chart, &close, parent);
     }
 
     /// Makes a pencil of items that pass near one another near `middle`, in a window too small to be halved.
@@ -218,11 +237,21 @@ impl Tracer<'_> {
             at: Vec::new(),
             core: Some(core),
         };
-        self.add_pencil(chart, &members);
+        self.add_pencil(chart, &members, NONE);
     }
 
-    fn add_pencil(&mut self, chart: Chart, members: &[u32]) {
+    /// Makes a pencil of members of another one, or of items that are in none.
+    fn add_pencil(&mut self, chart: Chart, members: &[u32], parent: u32) -> u32 {
         let id = self.pencils.len() as u32;
+        // One all of whose members left it is not asked again.
+        let parent = match self.pencils.get(parent as usize) {
+            Some(p) if p.count == members.len() => p.parent,
+            _ => parent,
+        };
+        let root = self
+            .pencils
+            .get(parent as usize)
+            .map_or(id, |parent| parent.root);
         let mut entries = Vec::with_capacity(PIECES * members.len());
         for &item in members {
             let Item { carrier, l, r, .. } = self.items[item as usize];
@@ -243,7 +272,7 @@ impl Tracer<'_> {
                 from = to;
             }
         }
-        let rest = (LARGE * members.len() >= self.items.len()).then(|| {
+        let rest = (root == id && LARGE * members.len() >= self.items.len()).then(|| {
             let tree = &self.tree;
             let others = (0..tree.entries())
                 .map(|at| (*tree.hull(at), tree.entry(at)))
@@ -252,10 +281,33 @@ impl Tracer<'_> {
         });
         self.pencils.push(Pencil {
             chart,
+            parent,
+            root,
             tree: Tree::new(entries),
             count: members.len(),
             rest,
         });
+        id
+    }
+
+    /// The innermost pencil that holds both items.
+    pub(super) fn common_pencil(&self, a: u32, b: u32) -> u32 {
+        let (mut p, mut q) = (self.pencil_of[a as usize], self.pencil_of[b as usize]);
+        while p != q && p != NONE && q != NONE {
+            // What is within another was made later.
+            let inner = if p > q { &mut p } else { &mut q };
+            *inner = self.pencils[*inner as usize].parent;
+        }
+        if p == q { p } else { NONE }
+    }
+
+    /// Whether an item is in a pencil.
+    pub(super) fn in_pencil(&self, item: u32, pencil: u32) -> bool {
+        let mut p = self.pencil_of[item as usize];
+        while p != NONE && p > pencil {
+            p = self.pencils[p as usize].parent;
+        }
+        p == pencil
     }
 
     /// The pencil of an item.
@@ -264,6 +316,9 @@ impl Tracer<'_> {
         (p != NONE).then(|| (p, &self.pencils[p as usize]))
     }
 }
+
+/// More than so many that cross where others touch are told from those by a pencil around them.
+const FEW: usize = 16;
 
 /// A pencil of at least one in so many items has an index of the others.
 const LARGE: usize = 4;
