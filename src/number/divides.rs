@@ -216,9 +216,15 @@ mod tests {
             let want = p.div_exact(&d).is_some_and(|q| {
                 let back = &q * &d;
                 let n = p.degree().unwrap_or(0);
-                (p.coeff(n) * &q.coeff(q.degree().unwrap_or(0))).div_rem_floor(&back.coeff(n)).1.is_zero()
+                (p.coeff(n) * &q.coeff(q.degree().unwrap_or(0)))
+                    .div_rem_floor(&back.coeff(n))
+                    .1
+                    .is_zero()
                     && (0..=q.degree().unwrap_or(0)).all(|i| {
-                        (p.coeff(n) * q.coeff(i)).div_rem_floor(&back.coeff(n)).1.is_zero()
+                        (p.coeff(n) * q.coeff(i))
+                            .div_rem_floor(&back.coeff(n))
+                            .1
+                            .is_zero()
                     })
             });
             assert_eq!(divides(&d, &p), Some(want), "({p}) / ({d})");

@@ -99,7 +99,8 @@ impl Prime {
             sum += u128::from(w) * u128::from(self.powers[i]);
             i += 1;
             if i == CHUNK {
-                total = self.reduce(u128::from(self.mul(self.reduce(sum), weight)) + u128::from(total));
+                total =
+                    self.reduce(u128::from(self.mul(self.reduce(sum), weight)) + u128::from(total));
                 weight = self.mul(weight, self.powers[CHUNK]);
                 (sum, i) = (0, 0);
             }
@@ -193,7 +194,9 @@ impl Joined {
     fn integers(&self) -> (Vec<Int>, u64) {
         let mut m = [0; OFFSETS.len()];
         m[0] = 1;
-        self.primes.iter().for_each(|q| times_plus(&mut m, q.p(), 0));
+        self.primes
+            .iter()
+            .for_each(|q| times_plus(&mut m, q.p(), 0));
         let value = |c: &Vec<u64>| {
             let mut v = [0; OFFSETS.len()];
             let digits = c.iter().zip(&self.primes).rev();
