@@ -43,15 +43,20 @@ pub(super) struct Pencil {
 /// Into how many pieces each member is cut for the index.
 const PIECES: usize = 4;
 
-impl Chart {
-    /// A hull of a curve over [a, b] in this plane.
-    fn hull(&self, k: &Kernel, c: CurveId, a: f64, b: f64) -> Hull {
-        let (top, below) = k.blown_up(c, self.reference, &self.at, self.core);
+/// A curve in the plane of a chart: a cubic over a quadratic.
+struct BlownUp {
+    top: [Approx; 5],
+    below: [Approx; 5],
+}
+
+impl BlownUp {
+    /// A hull over [a, b].
+    fn hull(&self, a: f64, b: f64) -> Hull {
         let over = |f: &[Approx; 5], a, b| bernstein(&f[..4], a, b);
-        let q = over(&below, a, b);
-        let p = over(&top, a, b);
+        let q = over(&self.below, a, b);
+        let p = over(&self.top, a, b);
         let Some((lo, hi)) = quotients(&p, &q) else {
-            let part = |a, b| quotients(&over(&top, a, b), &over(&below, a, b));
+            let part = |a, b| quotients(&over(&self.top, a, b), &over(&self.below, a, b));
             let (lo, hi) = in_parts(a, b, &part).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             return Hull::boxed([a, b, lo, hi]);
         };
@@ -62,9 +67,9 @@ impl Chart {
         }
         // N − slope·u·Q over Q is a cubic over a cubic too.
         let s = Approx::exact(slope);
-        let mut rest = top;
+        let mut rest = self.top;
         for i in 0..3 {
-            rest[i + 1] = rest[i + 1] - s * below[i];
+            rest[i + 1] = rest[i + 1] - s * self.below[i];
         }
         match quotients(&over(&rest, a, b), &q) {
             Some((low, high)) => Hull {
@@ -75,6 +80,13 @@ impl Chart {
             },
             None => boxed,
         }
+    }
+}
+
+impl Chart {
+    fn blow_up(&self, k: &Kernel, c: CurveId) -> BlownUp {
+        let (top, below) = k.blown_up(c, self.reference, &self.at, self.core);
+        BlownUp { top, below }
     }
 }
 
@@ -125,7 +137,7 @@ impl Pencil {
         (a, b): (f64, f64),
         found: impl FnMut(u32) -> bool,
     ) {
-        self.tree.query(&self.chart.hull(k, c, a, b), found);
+        self.tree.query(&self.chart.blow_up(k, c).hull(a, b), found);
     }
 }
 
@@ -261,6 +273,7 @@ impl Tracer<'_> {
             self.pencil_of[item as usize] = id;
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
             let pieces = if (b - a).is_finite() { PIECES } else { 1 };
+            let blown_up = chart.blow_up(self.k, c);
             let mut from = a;
             for p in 1..=pieces {
                 let to = if p == pieces {
@@ -268,7 +281,7 @@ impl Tracer<'_> {
                 } else {
                     (a + (b - a) * (p as f64 / pieces as f64)).clamp(from, b)
                 };
-                entries.push((chart.hull(self.k, c, from, to), item));
+                entries.push((blown_up.hull(from, to), item));
                 from = to;
             }
         }
