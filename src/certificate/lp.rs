@@ -107,33 +107,8 @@ pub fn verify(model: &Model, claim: &Claim) -> Result<(), Rejection> {
             Point::new(model, point)?.feasible(model)?;
             Point::new(model, ray)?.recedes(model)
         }
-        (
-            Certificate::Bounds {
-                primal,
-                dual,
-                repair,
-            },
-            Status::Optimal | Status::Undecided,
-        ) => {
-            let above = match primal {
-                Some(v) => Some(worth(model, v)?),
-                None => None,
-            };
-            let below = match (dual, repair) {
-                (Some(v), None) => Some(Prices::new(model, v)?.bound(model)?),
-                (Some(v), Some(r)) => {
-                    let near = Near::new(model, Prices::new(model, v)?)?;
-                    Some(near.bound(&r.order, r.margin)?)
-                }
-                (None, None) => None,
-                (None, Some(_)) => return reject("there are no prices to repair"),
-            };
-            let proven = if model.maximise {
-                (above, below)
-            } else {
-                (below, above)
-            };
-            if proven == claim.enclosure {
+        (bounds @ Certificate::Bounds { .. }, Status::Optimal | Status::Undecided) => {
+            if proven(model, bounds)? == claim.enclosure {
                 Ok(())
             } else {
                 reject("the enclosure claimed is not the one proven")
@@ -141,6 +116,43 @@ pub fn verify(model: &Model, claim: &Claim) -> Result<(), Rejection> {
         }
         _ => reject("the certificate is of another kind than the status"),
     }
+}
+
+/// The lower and the upper end of the optimum that a certificate of bounds proves; None where it
+/// offers nothing for that end.
+///
+/// # Errors
+/// Why it proves nothing, or that it is of another kind.
+pub fn proven(
+    model: &Model,
+    certificate: &Certificate,
+) -> Result<(Option<Rat>, Option<Rat>), Rejection> {
+    let Certificate::Bounds {
+        primal,
+        dual,
+        repair,
+    } = certificate
+    else {
+        return reject("the certificate is not one of bounds");
+    };
+    let point = match primal {
+        Some(v) => Some(worth(model, v)?),
+        None => None,
+    };
+    let prices = match (dual, repair) {
+        (Some(v), None) => Some(Prices::new(model, v)?.bound(model)?),
+        (Some(v), Some(r)) => {
+            let near = Near::new(model, Prices::new(model, v)?)?;
+            Some(near.bound(&r.order, r.margin)?)
+        }
+        (None, None) => None,
+        (None, Some(_)) => return reject("there are no prices to repair"),
+    };
+    Ok(if model.maximise {
+        (point, prices)
+    } else {
+        (prices, point)
+    })
 }
 
 /// The objective of a point, which must be feasible.

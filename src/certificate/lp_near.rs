@@ -62,6 +62,18 @@ pub(crate) struct Near<'a> {
     entries: Vec<Vec<(u32, f64)>>,
 }
 
+/// The matrix N̂ and what it was made of, columns numbered in the order of elimination.
+pub(crate) struct Matrix {
+    /// Upper triangle by columns, sorted, the diagonal last.
+    columns: Vec<Vec<(u32, f64)>>,
+    trace: f64,
+    /// Operations of the longest sum.
+    longest: usize,
+    /// Rows of S and powers of two of the free columns, both scaled.
+    lines: Vec<Vec<(u32, f64)>>,
+    scale: Vec<f64>,
+}
+
 impl<'a> Near<'a> {
     /// Rejects prices whose sign a row does not allow, and numbers that doubles cannot hold.
     pub(crate) fn new(model: &'a Model, prices: Prices) -> Result<Near<'a>, Rejection> {
@@ -129,10 +141,15 @@ impl<'a> Near<'a> {
     ///
     /// `order` is the order in which columns are eliminated, `margin` gives σ = 2⁻ᵐᵃʳᵍⁱⁿ.
     pub(crate) fn bound(&self, order: &[u32], margin: u32) -> Result<Rat, Rejection> {
+        self.bound_with(&self.matrix(order)?, margin)
+    }
+
+    /// The same with the matrix made before.
+    pub(crate) fn bound_with(&self, matrix: &Matrix, margin: u32) -> Result<Rat, Rejection> {
         let change = if self.missing.iter().all(|r| *r == 0.0) {
             vec![0.0; self.rows.len()]
         } else {
-            self.changes(order, margin)?
+            self.changes(matrix, margin)?
         };
         let mut loss = 0.0f64;
         for (&(i, _), t) in self.rows.iter().zip(&change) {
@@ -195,8 +212,8 @@ impl<'a> Near<'a> {
         })
     }
 
-    /// Bounds on |Δᵢ| for the rows of S, in the model's terms.
-    fn changes(&self, order: &[u32], margin: u32) -> Result<Vec<f64>, Rejection> {
+    /// N̂ in an order of elimination.
+    pub(crate) fn matrix(&self, order: &[u32]) -> Result<Matrix, Rejection> {
         let n = self.missing.len();
         if self.rows.len() > LONGEST || self.model.columns.len() > LONGEST {
             return reject("too many rows for prices that are not exact");
@@ -231,7 +248,6 @@ impl<'a> Near<'a> {
             .iter()
             .map(|v| power(-(exponent(*v) + 1).div_euclid(2)))
             .collect();
-        // N̂, its upper triangle by columns in the order of elimination, and its trace.
         let lines: Vec<Vec<(u32, f64)>> = self
             .entries
             .iter()
@@ -243,35 +259,48 @@ impl<'a> Near<'a> {
                 scaled
             })
             .collect();
-        let matrix = gram(n, &lines);
-        let trace: f64 = matrix.iter().filter_map(|c| c.last()).map(|e| e.1).sum();
-        let trace = trace * ABOVE;
+        let columns = gram(n, &lines);
+        let trace: f64 = columns.iter().filter_map(|c| c.last()).map(|e| e.1).sum();
+        Ok(Matrix {
+            columns,
+            trace: trace * ABOVE,
+            longest: length.iter().copied().max().unwrap_or(0) + 4,
+            lines,
+            scale,
+        })
+    }
+
+    /// Bounds on |Δᵢ| for the rows of S, in the model's terms.
+    fn changes(&self, matrix: &Matrix, margin: u32) -> Result<Vec<f64>, Rejection> {
         let sigma = power(-(margin.min(900) as i32));
-        let longest = length.iter().copied().max().unwrap_or(0) + 4;
-        let row = factor(&matrix, sigma).ok_or_else(|| {
+        let row = factor(&matrix.columns, sigma).ok_or_else(|| {
             Rejection("the matrix of prices that are not exact may be singular".into())
         })? + 4;
         // γ of the sums that made N̂, and γ/(1 − γ) of the factor.
-        let (a, b) = (longest as f64 * UNIT, row as f64 * UNIT);
-        let error = (a / (1.0 - a) + b / (1.0 - 2.0 * b)) * trace * ABOVE * ABOVE + TINY;
+        let (a, b) = (matrix.longest as f64 * UNIT, row as f64 * UNIT);
+        let error = (a / (1.0 - a) + b / (1.0 - 2.0 * b)) * matrix.trace * ABOVE * ABOVE + TINY;
         let lambda = (sigma - error) / ABOVE;
         if lambda.is_nan() || lambda <= 0.0 {
             return reject("the matrix of prices that are not exact is too ill-conditioned");
         }
-        let residual = self.missing.iter().zip(&scale);
+        let residual = self.missing.iter().zip(&matrix.scale);
         let residual: f64 = residual.map(|(r, d)| (r * d) * (r * d) + TINY).sum();
         let size = (residual * ABOVE).sqrt() * ABOVE / lambda * ABOVE;
         // Far beyond anything of use, and far within the double range.
         if size.is_nan() || size > 1e100 {
             return reject("the prices miss the costs of free columns by too much");
         }
-        let rows = self.rows.iter().zip(&lines).map(|(&(_, scale), line)| {
-            if line.is_empty() {
-                return 0.0;
-            }
-            let norm: f64 = line.iter().map(|e| e.1 * e.1).sum();
-            scale * ((norm * ABOVE + TINY).sqrt() * ABOVE * size) * ABOVE + TINY
-        });
+        let rows = self
+            .rows
+            .iter()
+            .zip(&matrix.lines)
+            .map(|(&(_, scale), line)| {
+                if line.is_empty() {
+                    return 0.0;
+                }
+                let norm: f64 = line.iter().map(|e| e.1 * e.1).sum();
+                scale * ((norm * ABOVE + TINY).sqrt() * ABOVE * size) * ABOVE + TINY
+            });
         let rows: Vec<f64> = rows.collect();
         if rows.iter().any(|t| !t.is_finite()) {
             return reject("a row is out of the range of doubles");

@@ -21,18 +21,19 @@ use crate::number::{Int, Rat};
 
 /// Share of the relative gap that may be left which the interior point is to leave.
 const GAP: f64 = 2.5e-10;
-/// Bits of the largest value of a column, first and where it must be mended, and of the largest
-/// price.
+/// Bits of the largest value of a column, first and where it must be mended.
 const POINT_BITS: i64 = 62;
 const MENDED_BITS: i64 = 100;
-const PRICE_BITS: i64 = 100;
+/// Bits of the largest price. The first is quick, as products with coefficients of 45 bits fit
+/// into 128; the second leaves room for programs that are worse conditioned.
+const PRICE_BITS: [i64; 2] = [76, 120];
 /// Corrections of the point and of the prices.
 const CORRECTIONS: usize = 4;
 const PRICE_CORRECTIONS: usize = 16;
 /// A correction leaves a price at least 2 to the power of minus this of itself.
 const KEPT: u64 = 3;
 /// Margins that are tried, as powers of 1/2.
-const MARGINS: std::ops::RangeInclusive<u32> = 2..=9;
+const MARGINS: [u32; 8] = [10, 14, 18, 22, 26, 30, 34, 38];
 
 /// Two proven ends.
 pub(crate) struct Enclosure {
@@ -64,27 +65,31 @@ pub(crate) fn enclose(model: &Model, problem: &Problem, budget: &Budget) -> Opti
     }
     let (x, y) = program.unscaled(problem, &central.x, &central.prices());
     let (point, value) = inside(model, problem, &program, &mut central, &x)?;
-    let mut prices = rounded(&y, PRICE_BITS)?;
-    correct(model, problem, &program, &mut central, &mut prices, budget)?;
-    let dual = prices.vector();
-    let near = Near::new(model, Prices::new(model, &dual).ok()?).ok()?;
-    let order: Vec<u32> = central.order().to_vec();
     let free = |j: &u32| {
         let r = &model.columns[*j as usize].range;
         r.lower.is_none() && r.upper.is_none()
     };
-    let order: Vec<u32> = order.into_iter().filter(free).collect();
-    for step in MARGINS {
-        budget.check().ok()?;
-        let margin = 4 * step;
-        if let Ok(bound) = near.bound(&order, margin) {
-            return Some(Enclosure {
-                primal: (point, value),
-                dual: (dual, bound),
-                repair: Some(Repair { order, margin }),
-                steps: central.steps,
-                near: x,
-            });
+    let order: Vec<u32> = central.order().iter().copied().filter(free).collect();
+    central.weigh_prices();
+    for bits in PRICE_BITS {
+        let mut prices = rounded(&y, bits)?;
+        correct(model, problem, &program, &central, &mut prices, budget)?;
+        let dual = prices.vector();
+        let near = Near::new(model, Prices::new(model, &dual).ok()?).ok()?;
+        let Ok(matrix) = near.matrix(&order) else {
+            continue;
+        };
+        for margin in MARGINS {
+            budget.check().ok()?;
+            if let Ok(bound) = near.bound_with(&matrix, margin) {
+                return Some(Enclosure {
+                    primal: (point, value),
+                    dual: (dual, bound),
+                    repair: Some(Repair { order, margin }),
+                    steps: central.steps,
+                    near: x,
+                });
+            }
         }
     }
     None
@@ -95,19 +100,16 @@ fn correct(
     model: &Model,
     problem: &Problem,
     program: &Program,
-    central: &mut Central<'_>,
+    central: &Central<'_>,
     prices: &mut Fixed,
     budget: &Budget,
 ) -> Option<()> {
     let rest = Remainder::new(model);
     let (mut best, mut held_back) = (f64::INFINITY, false);
     let nothing = vec![0.0; problem.n];
-    for round in 0..PRICE_CORRECTIONS {
+    for _ in 0..PRICE_CORRECTIONS {
         budget.check().ok()?;
         let (scaled, size) = program.scaled_costs(problem, &rest.of(prices));
-        if round == 0 {
-            central.weigh_prices();
-        }
         // Doubles gain several digits in each round, until the last digit held is reached.
         if size == 0.0 || !held_back && size > 0.1 * best {
             break;

@@ -113,32 +113,35 @@ impl<'a> Central<'a> {
 
     /// g·x on every side.
     fn along(&self, x: &[f64]) -> Vec<f64> {
-        let p = self.program;
-        let activity: Vec<f64> = (0..p.m)
-            .map(|i| p.rows.line(i).map(|(j, a)| a * x[j]).sum())
-            .collect();
-        let value = |v: usize| if v < p.n { x[v] } else { activity[v - p.n] };
+        let rows = &self.program.rows;
+        // The hot loops are plain ones.
+        let mut value = Vec::with_capacity(x.len() + self.program.m);
+        value.extend_from_slice(x);
+        for w in rows.start.windows(2) {
+            let (indices, entries) = (&rows.index[w[0]..w[1]], &rows.value[w[0]..w[1]]);
+            let mut sum = 0.0;
+            for k in 0..indices.len().min(entries.len()) {
+                sum += entries[k] * x[indices[k] as usize];
+            }
+            value.push(sum);
+        }
         let sides = self.sides.iter();
-        sides.map(|k| k.sign * value(k.variable)).collect()
+        sides.map(|k| k.sign * value[k.variable]).collect()
     }
 
     /// Σ t·g over the sides.
     fn against(&self, t: &[f64]) -> Vec<f64> {
-        let p = self.program;
-        let mut out = vec![0.0; p.n];
-        let mut price = vec![0.0; p.m];
+        let rows = &self.program.rows;
+        let mut price = vec![0.0; self.program.n + self.program.m];
         for (k, t) in self.sides.iter().zip(t) {
-            if k.variable < p.n {
-                out[k.variable] += k.sign * t;
-            } else {
-                price[k.variable - p.n] += k.sign * t;
-            }
+            price[k.variable] += k.sign * t;
         }
-        for (i, y) in price.iter().enumerate() {
-            if *y != 0.0 {
-                for (j, a) in p.rows.line(i) {
-                    out[j] += a * y;
-                }
+        let price_rows = price.split_off(self.program.n);
+        let mut out = price;
+        for (w, y) in rows.start.windows(2).zip(&price_rows) {
+            let (indices, entries) = (&rows.index[w[0]..w[1]], &rows.value[w[0]..w[1]]);
+            for k in 0..indices.len().min(entries.len()) {
+                out[indices[k] as usize] += entries[k] * y;
             }
         }
         out
