@@ -216,9 +216,16 @@ impl Fixed {
 
 /// Free columns in integers.
 struct Remainder {
-    /// The column, its scale, its cost and its entries times that.
-    columns: Vec<(usize, Int, Int, Vec<(u32, Int)>)>,
+    columns: Vec<Integral>,
     all: usize,
+}
+
+/// A column, its scale, and its cost and entries times that.
+struct Integral {
+    column: usize,
+    scale: Int,
+    cost: Int,
+    entries: Vec<(u32, Int)>,
 }
 
 impl Remainder {
@@ -242,7 +249,12 @@ impl Remainder {
             };
             let entries = c.entries.iter().map(|(i, a)| (*i, integral(a))).collect();
             let cost = integral(&c.cost);
-            (j, scale, cost, entries)
+            Integral {
+                column: j,
+                scale,
+                cost,
+                entries,
+            }
         });
         Remainder {
             columns: columns.collect(),
@@ -253,14 +265,14 @@ impl Remainder {
     /// c − Aᵀy in the free columns as doubles, zero in the others.
     fn of(&self, y: &Fixed) -> Vec<f64> {
         let mut out = vec![0.0; self.all];
-        for (j, scale, cost, entries) in &self.columns {
-            let mut sum = cost.shl(y.places as u64);
-            for (i, a) in entries {
+        for c in &self.columns {
+            let mut sum = c.cost.shl(y.places as u64);
+            for (i, a) in &c.entries {
                 sum -= &(a * &y.values[*i as usize]);
             }
             if !sum.is_zero() {
-                let ((v, e), (d, f)) = (mantissa(&sum), mantissa(scale));
-                out[*j] = ldexp(v / d, e - f - y.places);
+                let ((v, e), (d, f)) = (mantissa(&sum), mantissa(&c.scale));
+                out[c.column] = ldexp(v / d, e - f - y.places);
             }
         }
         out

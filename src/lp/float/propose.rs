@@ -1,8 +1,10 @@
 //! Which proposal when.
 //!
 //! Large programs (and those turned round) go to the interior point first; the others to the
-//! simplex method, with the interior point as the way out where that takes too many steps.
+//! simplex method, with the interior point as the way out where that takes too many steps. A large
+//! program whose normal equations fill up counts as one of the others.
 
+use super::cholesky::Cholesky;
 use super::engine::{Ending, Engine};
 use super::interior;
 use super::program::Program;
@@ -29,17 +31,34 @@ const LARGE: usize = 33_000;
 /// The same for programs that are dualised, where rows abound.
 const LARGE_DUALISED: usize = 2_500;
 
+/// Entries of its factor, for each of the program, from which an interior point is dear.
+const DEAR: usize = 30;
+/// Products that are made, for each entry of the program, to find out.
+const PRODUCTS: usize = 60;
+
+/// Whether the interior point's matrix fills up so much that simplex methods should come first.
+fn dear(program: &Program) -> bool {
+    let columns = &program.columns;
+    let entries = columns.index.len();
+    let spans = columns.start.windows(2);
+    let products = spans.clone().map(|w| (w[1] - w[0]).pow(2) / 2);
+    if products.sum::<usize>() > PRODUCTS * entries {
+        return false;
+    }
+    let cliques = spans.map(|w| &columns.index[w[0]..w[1]]);
+    Cholesky::new(program.m, cliques, DEAR * entries).is_none()
+}
+
 /// Proposes a basis for the problem, from a given one if there is one.
 pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget) -> Proposal {
     let direct = Program::new(problem);
     let program = direct.dual().unwrap_or_else(|| direct.clone());
     let entries = direct.columns.index.len();
-    let large = entries
-        >= if program.dualised {
-            LARGE_DUALISED
-        } else {
-            LARGE
-        };
+    let large = if program.dualised {
+        entries >= LARGE_DUALISED
+    } else {
+        entries >= LARGE && !dear(&program)
+    };
     let mut iterations = 0;
     let mut best: Option<(Vec<Status>, Ending, f64, Option<usize>)> = None;
     let mut point = (Vec::new(), Vec::new());
