@@ -253,3 +253,37 @@ fn a_large_remainder_is_refused() {
         }
     }
 }
+
+/// Two nearly parallel rows: the prices ½, ½ miss the second cost by 2⁻¹⁰, but prices that meet it
+/// are 1024 away and of the wrong sign; the program is unbounded. Whatever margin is hinted at,
+/// nothing is proven.
+#[test]
+fn a_nearly_singular_matrix_proves_nothing() {
+    let tiny = Rat::frac(1, 1 << 20);
+    let mut model = Model::new("parallel");
+    let x = model.add_column("x", Rat::one(), Range::free());
+    let y = model.add_column("y", Rat::one() + Rat::frac(1, 1 << 10), Range::free());
+    for (name, slope) in [("r", Rat::one()), ("s", Rat::one() + tiny)] {
+        let i = model.add_row(name, Range::at_least(Rat::one()));
+        model.set(i, x, Rat::one());
+        model.set(i, y, slope);
+    }
+    let exact = solve(&model, &Options::default());
+    assert_eq!(exact.status, Status::Unbounded);
+    let half = Rat::frac(1, 2);
+    for margin in 0..64 {
+        let certificate = Certificate::Bounds {
+            primal: None,
+            dual: Some(snapfit::lp::Vector {
+                denominator: Int::one(),
+                numerators: vec![(0, half.clone()), (1, half.clone())],
+            }),
+            repair: Some(snapfit::lp::Repair {
+                order: vec![0, 1],
+                margin,
+            }),
+        };
+        let proven = snapfit::certificate::lp::proven(&model, &certificate);
+        assert!(proven.is_err(), "{margin} {proven:?}");
+    }
+}
