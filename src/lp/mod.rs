@@ -13,6 +13,7 @@ mod basis;
 mod budget;
 pub mod cli;
 mod digits;
+mod enclose;
 pub(crate) mod field;
 mod float;
 mod lift;
@@ -31,6 +32,6 @@ mod solve;
 
 pub use budget::Meter;
 pub use model::{Column, Model, Range, Row};
-pub use outcome::{Certificate, Outcome, Place, Places, Status, Vector};
+pub use outcome::{Certificate, Outcome, Place, Places, Repair, Status, Vector};
 pub use read::{LpError, read_model};
 pub use solve::{Accuracy, Method, Options, solve};

@@ -5,8 +5,9 @@
 //! both are computed exactly from whatever is at hand: doubles from floating point, or the basis
 //! that the exact method had reached when a limit stopped it. What cannot be proven is dropped.
 
+use super::enclose::Enclosure;
 use super::model::{Model, Range};
-use super::outcome::{Certificate, Outcome, Status, Vector};
+use super::outcome::{Certificate, Outcome, Repair, Status, Vector};
 use super::repair;
 use crate::number::{Int, Rat};
 
@@ -17,6 +18,8 @@ pub(crate) struct Known {
     primal: Option<(Vector, Rat)>,
     /// Prices and the bound that they prove.
     dual: Option<(Vector, Rat)>,
+    /// What the proof needs where the prices are only nearly feasible.
+    repair: Option<Repair>,
 }
 
 /// Gap between the two ends, relative to the larger of 1 and their size, that counts as closed.
@@ -40,7 +43,15 @@ impl Known {
         let better = |old: &Rat| (value > *old) != model.maximise;
         if self.dual.as_ref().is_none_or(|(_, old)| better(old)) {
             self.dual = Some((prices, value));
+            self.repair = None;
         }
+    }
+
+    /// Takes in an enclosure whose ends are proven already.
+    pub(crate) fn enclosed(&mut self, ends: Enclosure) {
+        self.primal = Some(ends.primal);
+        self.dual = Some(ends.dual);
+        self.repair = ends.repair;
     }
 
     /// Takes in what doubles suggest: values of the columns and prices of the rows, both of which
@@ -145,7 +156,10 @@ impl Known {
             out.reason = None;
             out.objective = self.primal.as_ref().map(|p| p.1.clone());
         }
-        if met && let (Some((primal, value)), Some((dual, _))) = (&self.primal, &self.dual) {
+        if met
+            && self.repair.is_none()
+            && let (Some((primal, value)), Some((dual, _))) = (&self.primal, &self.dual)
+        {
             out.enclosure = (Some(value.clone()), Some(value.clone()));
             out.certificate = Some(Certificate::Optimal {
                 primal: primal.clone(),
@@ -165,6 +179,7 @@ impl Known {
         out.certificate = Some(Certificate::Bounds {
             primal: self.primal.map(|p| p.0),
             dual: self.dual.map(|d| d.0),
+            repair: self.repair,
         });
     }
 }

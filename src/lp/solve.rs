@@ -2,6 +2,7 @@
 
 use super::basis::{Basis, ColumnVector, Frame, RowVector};
 use super::budget::{Budget, Meter, Stage};
+use super::enclose;
 use super::float::{self, Refiner};
 use super::model::Model;
 use super::outcome::{Certificate, Outcome, Places, Status, VECTOR_BITS, conclude, point, prices};
@@ -98,9 +99,27 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut blame = None;
     let mut known = Known::default();
     let mut guess = (Vec::new(), Vec::new());
+    // Vectors that are to be written out are better exact.
+    if options.accuracy == Accuracy::Bounds
+        && options.method == Method::Warm
+        && !options.values
+        && given.is_none()
+        && let Some(found) = enclose::enclose(model, &problem, &budget.most())
+    {
+        iterations = found.steps;
+        let near = found.near.clone();
+        known.enclosed(found);
+        if known.closed() {
+            let mut out = Outcome::undecided("");
+            known.publish(model, true, &mut out);
+            out.float_iterations = iterations;
+            out.near = near;
+            return out;
+        }
+    }
     let start = if options.method == Method::Warm {
         let proposal = float::propose(&problem, given.as_ref(), &budget.most());
-        iterations = proposal.iterations;
+        iterations += proposal.iterations;
         blame = proposal.blame;
         guess = (proposal.point.clone(), proposal.prices.clone());
         if options.accuracy == Accuracy::Float {

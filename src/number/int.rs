@@ -195,6 +195,16 @@ impl Int {
             Err(_) => Int(Big(Long::of_unsigned(v))),
         }
     }
+    /// From the words of the absolute value, least significant first.
+    pub(crate) fn from_words(minus: bool, words: &[u64]) -> Int {
+        let n = words.iter().rposition(|&w| w != 0).map_or(0, |i| i + 1);
+        let at = |i: usize| words.get(i).copied().unwrap_or(0);
+        if n <= 2 && at(1) >> 63 == 0 {
+            let v = (i128::from(at(1)) << 64) | i128::from(at(0));
+            return Int(Small(if minus { -v } else { v }));
+        }
+        canonical(Long::of_words(minus, &words[..n]))
+    }
     /// Exact quotient; the caller knows that `d` divides `self` (the result means nothing otherwise).
     ///
     /// # Panics

@@ -76,6 +76,16 @@ impl Long {
         }
         Num(BigInt::from(v))
     }
+    /// From the words of the absolute value, least significant first.
+    pub(super) fn of_words(minus: bool, words: &[u64]) -> Long {
+        #[cfg(feature = "rug")]
+        if backend() == Backend::Rug {
+            let v = rug::Integer::from_digits(words, rug::integer::Order::Lsf);
+            return Gmp(if minus { -v } else { v });
+        }
+        let sign = if minus { Sign::Minus } else { Sign::Plus };
+        Num(BigInt::from_biguint(sign, from_limbs(words)))
+    }
     /// A decimal number without a sign.
     pub(super) fn parse(digits: &str) -> Option<Long> {
         #[cfg(feature = "rug")]

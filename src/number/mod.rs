@@ -4,6 +4,7 @@
 
 mod algebraic;
 mod backend;
+mod divides;
 mod factor;
 pub mod filter;
 mod float;
