@@ -54,8 +54,9 @@ pub(crate) struct Boundary {
 
 /// A strip: what bounds faces on a cylinder that is cut open.
 pub(crate) struct Strip<'a> {
-    /// The graphs of arcs, then the strip's lower border and its upper one.
-    pub(crate) graphs: &'a [SourceArc],
+    /// The graphs of arcs, then the strip's lower border and its upper one. Dropped once read: they are a tenth
+    /// of all that a large slice needs.
+    pub(crate) graphs: Vec<SourceArc>,
     /// The uprights of arcs, then those of the cut.
     pub(crate) uprights: &'a [Upright],
     /// The stretches of the cut, left and right in turn.
@@ -90,38 +91,37 @@ pub struct Found {
 ///
 /// The walk: O(n log n) for the index, then in proportion to what it meets. The merge: see `cylinder.rs`.
 pub(crate) fn boundary(
-    strip: &Strip<'_>,
+    mut strip: Strip<'_>,
     start: &(Rat, Rat),
     way: Way,
 ) -> Result<(Boundary, Found), FaceError> {
     let bad = |i: usize| move |why| FaceError::BadArc(i, 0, why);
     let on = |OnArc(i)| FaceError::StartOnArc(i as usize, 0);
-    let read = || {
-        let mut k = Kernel::default();
-        let mut items = Vec::with_capacity(strip.graphs.len() + strip.uprights.len());
-        for (i, arc) in strip.graphs.iter().enumerate() {
-            items.push(graph(&mut k, arc, i).map_err(bad(i))?);
-        }
-        for (i, arc) in strip.uprights.iter().enumerate() {
-            let i = strip.graphs.len() + i;
-            items.push(upright(&mut k, arc, i).map_err(bad(i))?);
-        }
-        for (item, names) in items.iter().zip(strip.names) {
-            k.name_ends(item, *names);
-        }
-        let start = Point {
-            x: k.rational(&start.0),
-            c: k.constant(&start.1),
-        };
-        Ok((k, items, start))
+    let sources = std::mem::take(&mut strip.graphs);
+    let graphs = sources.len();
+    let mut k = Kernel::default();
+    let mut items = Vec::with_capacity(graphs + strip.uprights.len());
+    for (i, arc) in sources.iter().enumerate() {
+        items.push(graph(&mut k, arc, i).map_err(bad(i))?);
+    }
+    drop(sources);
+    for (i, arc) in strip.uprights.iter().enumerate() {
+        let i = graphs + i;
+        items.push(upright(&mut k, arc, i).map_err(bad(i))?);
+    }
+    for (item, names) in items.iter().zip(strip.names) {
+        k.name_ends(item, *names);
+    }
+    let z = Point {
+        x: k.rational(&start.0),
+        c: k.constant(&start.1),
     };
-    let (mut k, items, z) = read()?;
     if way.method != Method::Merge {
         let budget = match way.method {
             Method::Auto => way.patience,
             _ => u64::MAX,
         };
-        let walked = walked(k, &items, strip, z, budget).map_err(on)?;
+        let walked = walked(k, &items, &strip, z, budget).map_err(on)?;
         match walked {
             Ok(b) => {
                 let method = Method::Walk;
@@ -134,7 +134,7 @@ pub(crate) fn boundary(
     let cut = [0, 1].map(|i| items[items.len() - 2 + i].l);
     let framed = cylinder::Strip {
         items: &items,
-        graphs: strip.graphs.len() - 2,
+        graphs: graphs - 2,
         uprights: strip.second.len(),
         second: strip.second,
         cut,
@@ -152,7 +152,7 @@ fn walked(
     start: Point,
     budget: u64,
 ) -> Result<Result<Boundary, Kernel>, OnArc> {
-    let first = strip.graphs.len();
+    let first = items.len() - strip.uprights.len();
     let curves = items
         .iter()
         .map(|i| match i.carrier {

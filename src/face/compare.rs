@@ -444,13 +444,14 @@ impl Kernel {
             return false;
         };
         let Some((at, order)) = (0..self.hubs.len()).rev().find_map(|i| {
-            let order = multiplicity(&exact, &self.equation(self.hubs[i])?);
+            let order = multiplicity(&exact, &self.equation(self.hubs[i].0)?);
             (order >= 2).then_some((i, order))
         }) else {
             return false;
         };
-        let x = self.hubs.remove(at);
-        self.hubs.push(x);
+        let hub = self.hubs.remove(at);
+        self.hubs.push(hub);
+        let x = hub.0;
         let (mut g, mut n) = (*h, 4);
         while n > 0 && g[n].sign() == Some(0) {
             n -= 1;
@@ -516,14 +517,8 @@ impl Kernel {
                 continue;
             }
             let around = Approx::between(n.lo.min(r.0), n.hi.max(r.1));
-            let steep = [
-                h[1],
-                two(h[2]),
-                h[3] * Approx::exact(3.0),
-                h[4] * Approx::exact(4.0),
-            ];
             // Monotone on both: one root.
-            return matches!(horner(&steep, around).sign(), Some(-1 | 1)).then_some(id);
+            return matches!(horner(&slope_of(h), around).sign(), Some(-1 | 1)).then_some(id);
         }
         if self.complete.contains_key(&(c, d)) {
             return None;
@@ -631,6 +626,11 @@ fn deflate(g: &mut [Approx; 5], n: &mut usize, x: Approx) -> Approx {
     g[*n] = Approx::default();
     *n -= 1;
     carry
+}
+
+/// The derivative of h.
+pub(super) fn slope_of(h: &[Approx; 5]) -> [Approx; 4] {
+    [h[1], two(h[2]), h[3] * Approx::exact(3.0), two(two(h[4]))]
 }
 
 fn derivative_of(h: &[i128; 5]) -> Option<[i128; 5]> {

@@ -10,6 +10,7 @@
 //! The second level is for numbers that even the first frame does not tell apart.
 
 use super::approx::{Approx, horner};
+use super::compare::slope_of;
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId};
 use crate::number::{Int, Rat};
 use std::cmp::Ordering;
@@ -43,15 +44,7 @@ impl Kernel {
                 return self.cmp_from(x, y, f);
             }
         }
-        let key = (self.nums[x as usize].lo.to_bits() >> 16, level);
-        let mut old = self.frame_near.get(&key).copied();
-        if old.is_none() {
-            // The cluster may straddle the keys.
-            old = self.frame_beside(x, y, level);
-            old.into_iter().for_each(|f| {
-                self.frame_near.insert(key, f);
-            });
-        }
+        let old = self.old_frame(x, y, level);
         if let Some(f) = old {
             if let Some(o) = self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f)) {
                 return Some(o);
@@ -62,8 +55,30 @@ impl Kernel {
             }
         }
         let f = self.new_frame(x, LEVELS[level]);
-        self.frame_near.insert(key, f);
+        self.frame_near.insert(self.frame_key(x, level), f);
         self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+    }
+
+    /// The same by a frame that is there already, of the first level if neither has one of another.
+    pub(super) fn cmp_in_old_frame(&mut self, x: NumId, y: NumId) -> Option<Ordering> {
+        let f = self.old_frame(x, y, 0)?;
+        self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+    }
+
+    fn frame_key(&self, x: NumId, level: usize) -> (u64, usize) {
+        (self.nums[x as usize].lo.to_bits() >> 16, level)
+    }
+
+    /// The frame made last near two numbers.
+    fn old_frame(&mut self, x: NumId, y: NumId, level: usize) -> Option<u32> {
+        let key = self.frame_key(x, level);
+        if let Some(&f) = self.frame_near.get(&key) {
+            return Some(f);
+        }
+        // The cluster may straddle the keys.
+        let f = self.frame_beside(x, y, level)?;
+        self.frame_near.insert(key, f);
+        Some(f)
     }
 
     /// The last frame made, if that is of this level and lies about as near to two numbers as they are known.
@@ -82,6 +97,15 @@ impl Kernel {
         match (self.local.get(&x), self.local.get(&y)) {
             (Some(&(f, a)), Some(&(g, b))) if f == g => apart(a, b),
             _ => None,
+        }
+    }
+
+    /// Where a number lies, roughly: a double for it, or for the frame that it was seen from and its distance.
+    pub(super) fn rough(&mut self, x: NumId) -> [f64; 2] {
+        let x = self.find(x);
+        match self.local.get(&x) {
+            Some(&(f, d)) => [self.frames[f as usize].lo, d.v],
+            None => [self.enclosure(x).0, 0.0],
         }
     }
 
@@ -160,7 +184,7 @@ impl Kernel {
         };
         let (frame, n) = (&self.frames[f as usize], &self.nums[x as usize]);
         let around = Approx::between(frame.lo.min(n.lo), frame.hi.max(n.hi));
-        let steep: [Approx; 4] = std::array::from_fn(|i| h[i + 1] * Approx::exact((i + 1) as f64));
+        let steep = slope_of(&h);
         let slope = horner(&steep, around);
         // One root where h is steep; it is x if anything is.
         if !matches!(slope.sign(), Some(-1 | 1)) {

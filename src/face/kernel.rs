@@ -85,7 +85,7 @@ pub(crate) struct Kernel {
     curve_ids: FastMap<[i64; 6], CurveId>,
     big_curve_ids: FastMap<[Int; 6], CurveId>,
     dens: FastMap<[i64; 3], u32>,
-    big_dens: FastMap<Poly, u32>,
+    big_dens: FastMap<[Int; 3], u32>,
     pub(super) nums: Vec<Num>,
     /// The k-th real root, from below, of m₀ + m₁u + m₂u², with its last coefficient positive.
     pub(super) roots: Vec<([i64; 3], u8)>,
@@ -109,7 +109,10 @@ pub(crate) struct Kernel {
     /// All others, of the few pairs whose crossings were isolated exactly.
     pub(super) complete: FastMap<(CurveId, CurveId), Vec<NumId>>,
     /// Numbers with equations of low degree in which several pairs were seen to meet; see `add_hub`.
-    pub(super) hubs: Vec<NumId>,
+    /// With a serial number each; and up to which one a number was held against them.
+    pub(super) hubs: Vec<(NumId, u32)>,
+    pub(super) hubs_made: u32,
+    pub(super) hubs_tried: FastMap<NumId, u32>,
     /// Which curves are known to meet where.
     pub(super) places: Places,
     pub(crate) stats: Stats,
@@ -133,9 +136,7 @@ impl Kernel {
         if let Some(c) = small_key(p, q) {
             return Ok(self.small_curve(c));
         }
-        let (p, q) = reduce(&Poly::new(p.to_vec()), &Poly::new(q.to_vec()));
-        let key: [Int; 6] =
-            std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) });
+        let key = reduce(p, q);
         if let Some(c) = machine(&key) {
             return Ok(self.small_curve(c));
         }
@@ -156,8 +157,9 @@ impl Kernel {
         });
         let id = self.curves.len() as CurveId;
         let next = (self.dens.len() + self.big_dens.len()) as u32;
-        let den = Poly::new(key[3..].to_vec()).primitive();
-        let den = match machine(&[0, 1, 2].map(|i| den.coeff(i))) {
+        let mut den: [Int; 3] = std::array::from_fn(|i| key[i + 3].clone());
+        primitive(&mut den);
+        let den = match machine(&den) {
             Some(den) => *self.dens.entry(den).or_insert(next),
             None => *self.big_dens.entry(den).or_insert(next),
         };
@@ -408,37 +410,78 @@ fn gcd(mut a: u64, mut b: u64) -> u64 {
     a
 }
 
+/// A prime just below 2⁶⁴.
+const PRIME: u64 = 0xffff_ffff_ffff_ffc5;
+
+/// x modulo the prime, for which 2⁶⁴ is 59.
+fn fold(x: u128) -> u64 {
+    const OVER: u128 = 59;
+    let x = u128::from(x as u64) + (x >> 64) * OVER;
+    let x = u128::from(x as u64) + (x >> 64) * OVER;
+    // Now below 2⁶⁴ + 60².
+    let prime = u128::from(PRIME);
+    (if x < prime { x } else { x - prime }) as u64
+}
+
+/// An integer modulo the prime.
+fn residue(x: &Int) -> u64 {
+    let (mut sum, mut power) = (0u64, 1u64);
+    x.for_each_word(|w| {
+        sum = fold(u128::from(w) * u128::from(power) + u128::from(sum));
+        power = fold(u128::from(power) << 64);
+    });
+    if x.sign() < 0 && sum != 0 {
+        PRIME - sum
+    } else {
+        sum
+    }
+}
+
 /// Whether the resultant of two quadratics (or what they degenerate to) is not zero modulo a prime.
-fn surely_coprime(p: &Poly, q: &Poly) -> bool {
-    const PRIME: u64 = 0xffff_ffff_ffff_ffc5;
-    let c: [u64; 6] =
-        std::array::from_fn(|i| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) }.mod_u64(PRIME));
-    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64;
-    let minus = |a: u64, b: u64| {
-        let d = u128::from(a) + u128::from(PRIME) - u128::from(b);
-        (d % u128::from(PRIME)) as u64
-    };
-    let minor = |i: usize, j: usize| minus(times(c[i], c[3 + j]), times(c[j], c[3 + i]));
-    let res = minus(
+fn surely_coprime(p: &[Int; 3], q: &[Int; 3]) -> bool {
+    let constant = |f: &[Int; 3]| f[1].is_zero() && f[2].is_zero() && !f[0].is_zero();
+    if constant(p) || constant(q) {
+        return true;
+    }
+    let (p, q) = (
+        [0, 1, 2].map(|i| residue(&p[i])),
+        [0, 1, 2].map(|i| residue(&q[i])),
+    );
+    let times = |a: u64, b: u64| fold(u128::from(a) * u128::from(b));
+    let minus = |a: u64, b: u64| fold(u128::from(a) + u128::from(PRIME - b));
+    let minor = |i: usize, j: usize| minus(times(p[i], q[j]), times(p[j], q[i]));
+    minus(
         times(minor(2, 0), minor(2, 0)),
         times(minor(2, 1), minor(1, 0)),
-    );
-    let constant = |f: &Poly| f.degree() == Some(0);
-    constant(p) || constant(q) || res != 0
+    ) != 0
 }
 
 /// P/Q in lowest terms, without content, the last coefficient of Q positive.
-fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
-    let one = || Poly::constant(Int::one());
-    if p.is_zero() {
-        return (Poly::zero(), one());
-    }
-    let (mut p, mut q) = (p.clone(), q.clone());
-    let g = if surely_coprime(&p, &q) {
-        one()
+fn reduce(p: &[Int; 3], q: &[Int; 3]) -> [Int; 6] {
+    let coefficient =
+        |p: &Poly, q: &Poly, i: usize| if i < 3 { p.coeff(i) } else { q.coeff(i - 3) };
+    let mut c: [Int; 6] = if surely_coprime(p, q) {
+        std::array::from_fn(|i| {
+            if i < 3 {
+                p[i].clone()
+            } else {
+                q[i - 3].clone()
+            }
+        })
     } else {
-        p.gcd(&q)
+        let (p, q) = lowest_terms(Poly::new(p.to_vec()), Poly::new(q.to_vec()));
+        std::array::from_fn(|i| coefficient(&p, &q, i))
     };
+    primitive(&mut c);
+    c
+}
+
+/// P/Q without their common factor.
+fn lowest_terms(p: Poly, q: Poly) -> (Poly, Poly) {
+    if p.is_zero() {
+        return (p, Poly::constant(Int::one()));
+    }
+    let g = p.gcd(&q);
     if g.degree() != Some(0)
         && let (Some(a), Some(b)) = (p.div_exact(&g), q.div_exact(&g))
     {
@@ -447,28 +490,43 @@ fn reduce(p: &Poly, q: &Poly) -> (Poly, Poly) {
             |f: &Poly, r: &Poly| Some(Rat::new(f.leading()?.clone(), r.leading()? * g.leading()?));
         if let (Some(s), Some(t)) = (ratio(&p, &a), ratio(&q, &b)) {
             let all = s / t;
-            p = a.scale(all.numer());
-            q = b.scale(all.denom());
+            return (a.scale(all.numer()), b.scale(all.denom()));
         }
     }
-    // The shortest coefficients first: mostly two of them have no common divisor.
-    let mut coeffs: Vec<&Int> = p.coeffs().iter().chain(q.coeffs()).collect();
-    coeffs.sort_unstable_by_key(|c| c.bits());
+    (p, q)
+}
+
+/// Divides by the common divisor, and makes the last one of them that is not zero positive.
+fn primitive<const N: usize>(c: &mut [Int; N]) {
+    // The shortest first: mostly two of them have no common divisor. Equal ones are one.
+    let mut order: [usize; N] = std::array::from_fn(|i| i);
+    order.sort_unstable_by_key(|&i| c[i].bits());
     let mut content = Int::zero();
-    for c in coeffs {
-        content = content.gcd(c);
+    let mut last = None;
+    for i in order {
+        if last.is_some_and(|j: usize| c[j] == c[i]) {
+            continue;
+        }
+        last = Some(i);
+        content = content.gcd(&c[i]);
         if content.is_one() {
             break;
         }
     }
-    let content = if q.leading().is_some_and(|l| l.sign() < 0) {
-        -content
-    } else {
-        content
-    };
-    if content.is_one() {
-        return (p, q);
+    if content.is_zero() {
+        return;
     }
-    let unscale = |f: &Poly| Poly::new(f.coeffs().iter().map(|c| c.div_exact(&content)).collect());
-    (unscale(&p), unscale(&q))
+    let negative = c
+        .iter()
+        .rev()
+        .find(|c| !c.is_zero())
+        .is_some_and(|c| c.sign() < 0);
+    if negative {
+        content = -content;
+    }
+    if !content.is_one() {
+        for c in c {
+            *c = c.div_exact(&content);
+        }
+    }
 }

@@ -5,9 +5,9 @@
 //! integer test where one side is a root of a small quadratic, else by algebraic numbers, made once, and by
 //! cells of 2^-FINE. Numbers proven equal are united, so that the second question costs nothing.
 
-use super::approx::Approx;
-use super::compare::vanishes;
-use super::kernel::{Def, Defect, Kernel, Num, NumId};
+use super::approx::{Approx, horner};
+use super::compare::{slope_of, vanishes};
+use super::kernel::{Def, Defect, Kernel, Num, NumId, two};
 use crate::number::modular::gcd_degree_bound;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use std::cmp::Ordering;
@@ -165,20 +165,26 @@ impl Kernel {
         if let Some(order) = self.framed_apart(x, y).or_else(|| self.cells_apart(x, y)) {
             return order;
         }
-        if self.same_root(x, y) || self.same_root(y, x) {
-            self.unite(x, y);
+        if self.united_by_equation(x, y) {
             return Ordering::Equal;
         }
         if self.joins_hub(x) | self.joins_hub(y) {
             return self.cmp(x, y);
         }
-        if let Some(order) = self.cmp_in_frames(x, y, 0) {
+        if let Some(order) = self.cmp_in_old_frame(x, y) {
             return order;
         }
-        // Numbers with no common equation are not equal: worth telling apart by ever more digits.
+        // That frame told all but a few that differ, so these may be equal.
         let a = self.exact(x).defining_polynomial();
         let b = self.exact(y).defining_polynomial();
+        if self.united_by_equation(x, y) {
+            return Ordering::Equal;
+        }
+        // Numbers with no common equation are not equal: worth telling apart by ever more digits.
         if gcd_degree_bound(&a, &b) == Some(0) {
+            if let Some(order) = self.cmp_in_frames(x, y, 0) {
+                return order;
+            }
             if let Some(order) = self.cmp_in_frames(x, y, 1) {
                 return order;
             }
@@ -191,7 +197,10 @@ impl Kernel {
         let (a, b) = (self.exact(x).clone(), self.exact(y).clone());
         let order = a.cmp(&b);
         if order.is_eq() {
+            let common = a.defining_polynomial().gcd(&b.defining_polynomial());
+            self.learn(x, &common.primitive());
             self.unite(x, y);
+            self.add_hub(x);
         }
         order
     }
@@ -213,40 +222,74 @@ impl Kernel {
         }
     }
 
+    /// Unites two numbers that their equations prove to be equal.
+    fn united_by_equation(&mut self, x: NumId, y: NumId) -> bool {
+        let equal = self.same_root(x, y) || self.same_root(y, x);
+        if equal {
+            self.unite(x, y);
+        }
+        equal
+    }
+
     /// Whether y, a crossing, is x, by an integer test; false where that does not tell.
     pub(super) fn same_root(&self, x: NumId, y: NumId) -> bool {
+        let (a, b) = (self.enclosure(x), self.enclosure(y));
+        if a.1 < b.0 || b.1 < a.0 {
+            return false;
+        }
+        let Some(m) = self.equation(x) else {
+            return false;
+        };
+        // The one root of a polynomial where that is steep.
+        let around = Approx::between(a.0.min(b.0), a.1.max(b.1));
+        let alone = |steep: &[Approx]| matches!(horner(steep, around).sign(), Some(-1 | 1));
+        if self.equation(y) == Some(m) {
+            let [_, b, c] = m.map(Approx::from_word);
+            return alone(&[b, two(c)]);
+        }
         let Def::Cross(c, d) = self.nums[y as usize].def else {
             return false;
         };
-        if self.exact.contains_key(&y) {
-            // Its enclosure may hold other roots.
+        let Some(h) = self.diff_small(c, d) else {
+            return false;
+        };
+        if vanishes(&h, &m) != Some(true) {
             return false;
         }
-        let (a, b) = (self.enclosure(x), self.enclosure(y));
-        // x is a root of h in the enclosure that holds only one.
-        a.0 >= b.0
-            && a.1 <= b.1
-            && self.equation(x).is_some_and(|m| {
-                self.diff_small(c, d)
-                    .is_some_and(|h| vanishes(&h, &m) == Some(true))
-            })
+        // A crossing is the only root of h in its enclosure, as long as that is what it was found by.
+        let inside = a.0 >= b.0 && a.1 <= b.1 && !self.exact.contains_key(&y);
+        inside || alone(&slope_of(&h.map(Approx::from_int)))
     }
 
     /// Keeps a number in mind with which others may be equal, if its equation is of low degree: two crossings in one
     /// point are hard to tell to be equal, each of them and the root of such an equation are not.
     pub(super) fn add_hub(&mut self, x: NumId) {
-        if self.equation(x).is_some() {
-            self.hubs.retain(|&h| h != x);
-            self.hubs.push(x);
-            let old = self.hubs.len().saturating_sub(HUBS);
-            self.hubs.drain(..old);
+        if self.equation(x).is_none() {
+            return;
         }
+        let x = self.find(x);
+        for at in (0..self.hubs.len()).rev() {
+            if self.find(self.hubs[at].0) == x {
+                self.hubs.remove(at);
+            }
+        }
+        self.hubs_made += 1;
+        self.hubs.push((x, self.hubs_made));
+        let old = self.hubs.len().saturating_sub(HUBS);
+        self.hubs.drain(..old);
     }
 
-    /// Unites a crossing with the hub that it is.
+    /// Unites a crossing with the hub that it is. Each crossing is held against each hub once.
     fn joins_hub(&mut self, x: NumId) -> bool {
         let x = self.find(x);
-        let hub = self.hubs.iter().rev().copied();
+        let tried = self
+            .hubs_tried
+            .insert(x, self.hubs_made)
+            .unwrap_or_default();
+        if tried == self.hubs_made {
+            return false;
+        }
+        let hub = self.hubs.iter().rev().filter(|h| h.1 > tried).map(|h| h.0);
         let hub = hub.into_iter().find(|&h| h != x && self.same_root(h, x));
         let Some(hub) = hub.map(|h| self.find(h)) else {
             return false;
@@ -359,11 +402,72 @@ impl Kernel {
                 || a.defining_polynomial(),
                 |r| Poly::new(vec![-r.numer(), r.denom().clone()]),
             );
-            let m = [0, 1, 2, 3].map(|i| m.coeff(i).to_i64());
-            if let [Some(a), Some(b), Some(c), Some(0)] = m {
-                self.low.insert(x, [a, b, c]);
-            }
+            self.learn(x, &m);
         }
         self.exact.insert(x, a);
+    }
+
+    /// Keeps an equation of a number, if that is of low degree and short.
+    fn learn(&mut self, x: NumId, m: &Poly) {
+        if m.degree().is_some_and(|n| n <= 2)
+            && let [Some(a), Some(b), Some(c)] = [0, 1, 2].map(|i| m.coeff(i).to_i64())
+        {
+            self.low.insert(x, [a, b, c]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::face::kernel::CurveId;
+
+    fn curve(k: &mut Kernel, p: [i64; 3], q: [i64; 3]) -> CurveId {
+        k.curve(&p.map(Int::from), &q.map(Int::from))
+            .expect("a denominator")
+    }
+
+    /// The crossing of two curves near a place.
+    fn crossing(k: &mut Kernel, c: CurveId, d: CurveId, near: f64) -> NumId {
+        let mut found = Vec::new();
+        k.crossings(c, d, (0.0, 2.0), &[], &mut found);
+        found.retain(|&x| (k.enclosure(x).0 - near).abs() < 1e-3);
+        assert_eq!(found.len(), 1);
+        found[0]
+    }
+
+    #[test]
+    fn an_even_quartic_is_no_quadratic() {
+        let mut k = Kernel::default();
+        let c = curve(&mut k, [1, 0, 0], [1, 0, 1]);
+        let d = curve(&mut k, [2, 0, -1], [1, 0, 2]);
+        // u⁴ + u² − 1 is irreducible.
+        let x = crossing(&mut k, c, d, 0.786);
+        k.exact(x);
+        assert_eq!(k.equation(x), None);
+    }
+
+    #[test]
+    fn what_two_crossings_have_in_common_is_learnt() {
+        // Through (√2, 5/11) all of them, with denominators of their own.
+        let mut k = Kernel::default();
+        let curves = [[5, 1, 1], [7, 3, 2], [2, 4, -1], [3, 2, 7]].map(|[a, d, e]| {
+            let (p, q) = (
+                [5 * d - 22 * a, 0, 5 * d + 11 * a],
+                [11 * (d - 2 * e), 0, 11 * (d + e)],
+            );
+            curve(&mut k, p, q)
+        });
+        let [a, b, c, d] = curves;
+        let (x, y, z) = (
+            crossing(&mut k, a, b, 1.414),
+            crossing(&mut k, c, d, 1.414),
+            crossing(&mut k, a, d, 1.414),
+        );
+        assert!(k.cmp(x, y).is_eq());
+        assert_eq!(k.equation(x), Some([-2, 0, 1]));
+        let before = k.exact.len();
+        assert!(k.cmp(x, z).is_eq());
+        assert_eq!(k.exact.len(), before, "the third is known by its equation");
     }
 }

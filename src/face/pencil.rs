@@ -26,28 +26,37 @@ struct Chart {
     core: Option<Core>,
 }
 
-/// Arcs through a point, in the plane where it is blown up.
+/// Arcs through a point, in the plane where it is blown up. Those of them that touch there, or pass through a second
+/// point together, may be a pencil of their own within it.
 pub(super) struct Pencil {
     chart: Chart,
+    /// The pencil within which this one is, made earlier; and the outermost one.
+    pub(super) parent: u32,
+    pub(super) root: u32,
     /// The members there.
     tree: Tree,
     count: usize,
-    /// The index of all others, if the members are a large part of all items.
+    /// The index of all others, if this is an outermost pencil and its members are a large part of all items.
     pub(super) rest: Option<Tree>,
 }
 
 /// Into how many pieces each member is cut for the index.
-const PIECES: usize = 4;
+const PIECES: usize = 2;
 
-impl Chart {
-    /// A hull of a curve over [a, b] in this plane.
-    fn hull(&self, k: &Kernel, c: CurveId, a: f64, b: f64) -> Hull {
-        let (top, below) = k.blown_up(c, self.reference, &self.at, self.core);
+/// A curve in the plane of a chart: a cubic over a quadratic.
+struct BlownUp {
+    top: [Approx; 5],
+    below: [Approx; 5],
+}
+
+impl BlownUp {
+    /// A hull over [a, b].
+    fn hull(&self, a: f64, b: f64) -> Hull {
         let over = |f: &[Approx; 5], a, b| bernstein(&f[..4], a, b);
-        let q = over(&below, a, b);
-        let p = over(&top, a, b);
+        let q = over(&self.below, a, b);
+        let p = over(&self.top, a, b);
         let Some((lo, hi)) = quotients(&p, &q) else {
-            let part = |a, b| quotients(&over(&top, a, b), &over(&below, a, b));
+            let part = |a, b| quotients(&over(&self.top, a, b), &over(&self.below, a, b));
             let (lo, hi) = in_parts(a, b, &part).unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             return Hull::boxed([a, b, lo, hi]);
         };
@@ -58,9 +67,9 @@ impl Chart {
         }
         // N − slope·u·Q over Q is a cubic over a cubic too.
         let s = Approx::exact(slope);
-        let mut rest = top;
+        let mut rest = self.top;
         for i in 0..3 {
-            rest[i + 1] = rest[i + 1] - s * below[i];
+            rest[i + 1] = rest[i + 1] - s * self.below[i];
         }
         match quotients(&over(&rest, a, b), &q) {
             Some((low, high)) => Hull {
@@ -71,6 +80,13 @@ impl Chart {
             },
             None => boxed,
         }
+    }
+}
+
+impl Chart {
+    fn blow_up(&self, k: &Kernel, c: CurveId) -> BlownUp {
+        let (top, below) = k.blown_up(c, self.reference, &self.at, self.core);
+        BlownUp { top, below }
     }
 }
 
@@ -121,7 +137,7 @@ impl Pencil {
         (a, b): (f64, f64),
         found: impl FnMut(u32) -> bool,
     ) {
-        self.tree.query(&self.chart.hull(k, c, a, b), found);
+        self.tree.query(&self.chart.blow_up(k, c).hull(a, b), found);
     }
 }
 
@@ -192,10 +208,25 @@ impl Tracer<'_> {
         let Some(order) = order else {
             return;
         };
+        let close: Vec<u32> = members
+            .iter()
+            .zip(&orders)
+            .filter(|m| *m.1 >= order)
+            .map(|m| *m.0)
+            .collect();
+        let mut parent = old;
+        if order > 1 && members.len() - close.len() > FEW {
+            // The others cross those that touch.
+            let mut around = chart.clone();
+            around.at.push((x, 1));
+            members.retain({
+                let mut orders = orders.iter();
+                move |_| orders.next().is_some_and(|&o| o >= 1)
+            });
+            parent = self.add_pencil(around, &members, parent);
+        }
         chart.at.push((x, order));
-        let mut orders = orders.iter();
-        members.retain(|_| orders.next().is_some_and(|&o| o >= order));
-        self.add_pencil(chart, &members);
+        self.add_pencil(chart, &close, parent);
     }
 
     /// Makes a pencil of items that pass near one another near `middle`, in a window too small to be halved.
@@ -218,11 +249,21 @@ impl Tracer<'_> {
             at: Vec::new(),
             core: Some(core),
         };
-        self.add_pencil(chart, &members);
+        self.add_pencil(chart, &members, NONE);
     }
 
-    fn add_pencil(&mut self, chart: Chart, members: &[u32]) {
+    /// Makes a pencil of members of another one, or of items that are in none.
+    fn add_pencil(&mut self, chart: Chart, members: &[u32], parent: u32) -> u32 {
         let id = self.pencils.len() as u32;
+        // One all of whose members left it is not asked again.
+        let parent = match self.pencils.get(parent as usize) {
+            Some(p) if p.count == members.len() => p.parent,
+            _ => parent,
+        };
+        let root = self
+            .pencils
+            .get(parent as usize)
+            .map_or(id, |parent| parent.root);
         let mut entries = Vec::with_capacity(PIECES * members.len());
         for &item in members {
             let Item { carrier, l, r, .. } = self.items[item as usize];
@@ -232,6 +273,7 @@ impl Tracer<'_> {
             self.pencil_of[item as usize] = id;
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
             let pieces = if (b - a).is_finite() { PIECES } else { 1 };
+            let blown_up = chart.blow_up(self.k, c);
             let mut from = a;
             for p in 1..=pieces {
                 let to = if p == pieces {
@@ -239,11 +281,11 @@ impl Tracer<'_> {
                 } else {
                     (a + (b - a) * (p as f64 / pieces as f64)).clamp(from, b)
                 };
-                entries.push((chart.hull(self.k, c, from, to), item));
+                entries.push((blown_up.hull(from, to), item));
                 from = to;
             }
         }
-        let rest = (LARGE * members.len() >= self.items.len()).then(|| {
+        let rest = (root == id && LARGE * members.len() >= self.items.len()).then(|| {
             let tree = &self.tree;
             let others = (0..tree.entries())
                 .map(|at| (*tree.hull(at), tree.entry(at)))
@@ -252,10 +294,33 @@ impl Tracer<'_> {
         });
         self.pencils.push(Pencil {
             chart,
+            parent,
+            root,
             tree: Tree::new(entries),
             count: members.len(),
             rest,
         });
+        id
+    }
+
+    /// The innermost pencil that holds both items.
+    pub(super) fn common_pencil(&self, a: u32, b: u32) -> u32 {
+        let (mut p, mut q) = (self.pencil_of[a as usize], self.pencil_of[b as usize]);
+        while p != q && p != NONE && q != NONE {
+            // What is within another was made later.
+            let inner = if p > q { &mut p } else { &mut q };
+            *inner = self.pencils[*inner as usize].parent;
+        }
+        if p == q { p } else { NONE }
+    }
+
+    /// Whether an item is in a pencil.
+    pub(super) fn in_pencil(&self, item: u32, pencil: u32) -> bool {
+        let mut p = self.pencil_of[item as usize];
+        while p != NONE && p > pencil {
+            p = self.pencils[p as usize].parent;
+        }
+        p == pencil
     }
 
     /// The pencil of an item.
@@ -264,6 +329,9 @@ impl Tracer<'_> {
         (p != NONE).then(|| (p, &self.pencils[p as usize]))
     }
 }
+
+/// More than so many that cross where others touch are told from those by a pencil around them.
+const FEW: usize = 16;
 
 /// A pencil of at least one in so many items has an index of the others.
 const LARGE: usize = 4;

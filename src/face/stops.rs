@@ -92,6 +92,9 @@ fn crowd(depth: usize) -> usize {
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
 
+/// More hits than this are brought roughly into order first.
+const MANY: usize = 24;
+
 /// How many items a search may find in vain, on average, before bands are made; and how many in all before that
 /// is asked.
 const VAIN: u64 = 16;
@@ -300,7 +303,8 @@ impl Tracer<'_> {
             }
             pencil = None;
         }
-        let pencil_id = pencil.map_or(NONE, |p| p.0);
+        let innermost = pencil.map_or(NONE, |p| p.0);
+        let outermost = pencil.map_or(NONE, |p| p.1.root);
         self.serial += 1;
         let serial = self.serial;
         self.stamp[item as usize] = serial;
@@ -309,7 +313,6 @@ impl Tracer<'_> {
         let me = &items[item as usize];
         let busy = self.busy.get(&item);
         let (mut few, mut tests, mut wasted) = (true, 0, 0);
-        let own = self.pencil_of[item as usize];
         let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
@@ -327,11 +330,12 @@ impl Tracer<'_> {
                 let lo = hull.bounds[0].max(k.enclosure(other.l).0);
                 let hi = hull.bounds[1].min(k.enclosure(other.r).1);
                 let vain = lo > hi
-                    || if own != NONE && self.pencil_of[b as usize] == own {
-                        k.miss_beside(c, d, lo, hi, self.pencils[own as usize].known())
-                    } else {
-                        k.miss(c, d, lo, hi)
-                            || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                    || match self.pencils.get(self.common_pencil(item, b) as usize) {
+                        Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
+                        None => {
+                            k.miss(c, d, lo, hi)
+                                || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
+                        }
                     };
                 if vain {
                     wasted += 1;
@@ -342,13 +346,17 @@ impl Tracer<'_> {
             few = near.len() <= most;
             few
         };
-        let pencil = (pencil_id != NONE).then(|| &self.pencils[pencil_id as usize]);
-        if let (Some(pencil), Carrier::Graph(c)) = (pencil, me.carrier) {
-            pencil.query(k, c, range, &mut consider);
+        let (mut inner, mut p) = (NONE, innermost);
+        while let (Some(pencil), Carrier::Graph(c)) = (self.pencils.get(p as usize), me.carrier) {
+            pencil.query(k, c, range, |b| {
+                inner != NONE && self.in_pencil(b, inner) || consider(b)
+            });
+            (inner, p) = (p, pencil.parent);
         }
+        let outer = self.pencils.get(outermost as usize);
         if let Some(Pencil {
             rest: Some(rest), ..
-        }) = pencil
+        }) = outer
         {
             rest.query(hull, &mut consider);
         } else {
@@ -365,7 +373,7 @@ impl Tracer<'_> {
                     }
             };
             self.tree.descend(wanted, |b| {
-                pencil_id != NONE && self.pencil_of[b as usize] == pencil_id || consider(b)
+                outermost != NONE && self.in_pencil(b, outermost) || consider(b)
             });
         }
         self.stamp = stamp;
@@ -490,8 +498,11 @@ impl Tracer<'_> {
                 }
             }
         }
-        let k = &mut *self.k;
         let vertical = matches!(me.carrier, Carrier::Vertical(..));
+        if !vertical && hits.len() > MANY {
+            self.presort(&mut hits);
+        }
+        let k = &mut *self.k;
         let mut order = |a: &Hit, b: &Hit| {
             if vertical {
                 k.cmp_at(a.c, b.c, a.x)
@@ -525,6 +536,23 @@ impl Tracer<'_> {
         let w = &mut self.windows[w as usize];
         w.stops = start as u32;
         w.stop_count = (self.stops.len() - start) as u32;
+    }
+
+    /// Brings many hits nearly into order by what is known of their places in doubles: a sort that goes by exact
+    /// order then hardly asks more than whether neighbours are in order.
+    fn presort(&mut self, hits: &mut [Hit]) {
+        // Neighbours are asked for once, so that those too near for doubles are seen from a frame.
+        for i in 1..hits.len() {
+            self.k.cmp(hits[i - 1].x, hits[i].x);
+        }
+        hits.sort_by_cached_key(|h| {
+            let key = self.k.rough(h.x);
+            key.map(|v| {
+                // As `total_cmp` orders doubles.
+                let bits = v.to_bits() as i64;
+                bits ^ ((bits >> 63) as u64 >> 1) as i64
+            })
+        });
     }
 
     /// The vertex where an item has these hits, all at one point.

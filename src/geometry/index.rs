@@ -73,14 +73,15 @@ impl Hull {
             self.bounds[0].max(o.bounds[0]),
             self.bounds[1].min(o.bounds[1]),
         ];
-        let above = |a: &Hull, b: &Hull| {
-            x.iter().all(|&x| {
-                let (s, r) = (a.slope * x, b.slope * x);
-                let room = ERR * (s.abs() + r.abs() + a.low.abs() + b.high.abs());
-                (s - r) + (a.low - b.high) > room
-            })
-        };
-        above(self, o) || above(o, self)
+        // How far the one line lies above the other at both ends; what is not a number proves nothing, since the
+        // room is none then either.
+        let (s, r) = (x.map(|x| self.slope * x), x.map(|x| o.slope * x));
+        let (from, to) = (s[0] - r[0], s[1] - r[1]);
+        let size = (s[0].abs() + r[0].abs()) + (s[1].abs() + r[1].abs());
+        let above = from.min(to) + (self.low - o.high);
+        let below = from.max(to) + (self.high - o.low);
+        above > ERR * (size + self.low.abs() + o.high.abs())
+            || -below > ERR * (size + self.high.abs() + o.low.abs())
     }
 
     /// An enclosure of t over [a, b] within it.

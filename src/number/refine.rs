@@ -92,7 +92,7 @@ pub(crate) struct Refiner<'a> {
     t: u64,
     exact: Option<Rat>,
     /// Where the interval reached is left for the next refinement, with its precision at the start.
-    keep: Option<(&'a Mutex<Option<Span>>, u64)>,
+    keep: Option<(&'a Mutex<Option<Box<Span>>>, u64)>,
 }
 
 impl Drop for Refiner<'_> {
@@ -102,7 +102,7 @@ impl Drop for Refiner<'_> {
         {
             let mut kept = place.lock().unwrap_or_else(|e| e.into_inner());
             if kept.as_ref().is_none_or(|s| s.e < self.span.e) {
-                *kept = Some(self.span.clone());
+                *kept = Some(Box::new(self.span.clone()));
             }
         }
     }
@@ -132,7 +132,7 @@ impl<'a> Refiner<'a> {
         }
     }
     /// The same, leaving the interval that it ends with.
-    pub(crate) fn keeping(mut self, place: &'a Mutex<Option<Span>>) -> Refiner<'a> {
+    pub(crate) fn keeping(mut self, place: &'a Mutex<Option<Box<Span>>>) -> Refiner<'a> {
         self.keep = Some((place, self.span.e));
         self
     }

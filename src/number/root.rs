@@ -23,13 +23,14 @@ pub(crate) struct Root {
     pub(crate) poly: Arc<Poly>,
     pub(crate) span: Span,
     sign_lo: i32,
-    enclosure: OnceLock<(Interval, Option<Span>)>,
+    // What few roots come to know is kept apart: there are several roots an arc.
+    enclosure: OnceLock<(Interval, Option<Box<Span>>)>,
     /// The narrowest interval that a refinement has ended with. Cells of a grid are what they are,
     /// whatever they are found from.
-    sharp: Mutex<Option<Span>>,
+    sharp: Mutex<Option<Box<Span>>>,
     /// Polynomials proven to vanish here: what is proven once is known by name from then on.
     vanishing: Mutex<Vec<Poly>>,
-    rational: OnceLock<Option<Rat>>,
+    rational: OnceLock<Option<Box<Rat>>>,
     minimal: OnceLock<Arc<Poly>>,
     /// Another root that has been proven to be the same number; what is proven once is one handle
     /// from then on. Links lead to lower addresses only, so they form no circle.
@@ -111,11 +112,10 @@ impl Root {
                 self.enclosure();
             }
             let best = self.enclosure.get().filter(|_| filter::on());
-            best.and_then(|(_, s)| s.as_ref())
-                .unwrap_or(&self.span)
-                .clone()
+            let best = best.and_then(|(_, s)| s.as_deref());
+            Box::new(best.unwrap_or(&self.span).clone())
         });
-        Refiner::new(&self.poly, start, self.sign_lo).keeping(&self.sharp)
+        Refiner::new(&self.poly, *start, self.sign_lo).keeping(&self.sharp)
     }
     /// Certified double enclosure, made once; the whole line where the filter is off.
     pub(crate) fn enclosure(&self) -> Interval {
@@ -124,7 +124,7 @@ impl Root {
         }
         self.enclosure.get_or_init(|| self.enclose()).0
     }
-    fn enclose(&self) -> (Interval, Option<Span>) {
+    fn enclose(&self) -> (Interval, Option<Box<Span>>) {
         let polished = || {
             let ends = self.span.doubles()?;
             FloatPoly::new(&self.poly)?.polish(ends.lo, ends.hi, self.sign_lo)
@@ -133,7 +133,7 @@ impl Root {
             Some(x) => {
                 let span = Span::from_doubles(x);
                 if x.width() <= NARROW * x.lo.abs().min(x.hi.abs()) {
-                    return (x, Some(span));
+                    return (x, Some(Box::new(span)));
                 }
                 span
             }
@@ -142,7 +142,7 @@ impl Root {
         self.narrowed(start)
     }
     /// The same by exact refinement.
-    fn narrowed(&self, start: Span) -> (Interval, Option<Span>) {
+    fn narrowed(&self, start: Span) -> (Interval, Option<Box<Span>>) {
         let size = start.lo.bits().max(start.hi.bits()) as i64 - start.e as i64;
         let mut bits = (60 - size).clamp(0, 1140) as u64;
         let mut refiner = Refiner::new(&self.poly, start, self.sign_lo);
@@ -160,7 +160,7 @@ impl Root {
                     lo: Rat::dyadic(k, e).interval().lo,
                     hi,
                 };
-                return (x, Some(refiner.span().clone()));
+                return (x, Some(Box::new(refiner.span().clone())));
             }
             bits = if known < 2 {
                 2 * bits + 64
@@ -194,7 +194,8 @@ impl Root {
             let inside = self.span.low() < r && r < self.span.high();
             (inside && self.poly.sign_at(&r) == 0).then_some(r)
         };
-        self.rational.get_or_init(decide).as_ref()
+        let decide = || decide().map(Box::new);
+        self.rational.get_or_init(decide).as_deref()
     }
     /// The irreducible polynomial of the root.
     pub(crate) fn minimal(&self) -> &Arc<Poly> {

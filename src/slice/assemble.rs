@@ -177,7 +177,7 @@ impl Assembly {
             }
         }
         // Which half-edge runs along the other side of a stretch of the cut.
-        let uprights = self.strip.graphs.len();
+        let uprights = self.strip.owners.len() - self.strip.uprights.len();
         let first = self.strip.uprights.len() - 2 * self.strip.glue.len();
         let mut across: HashMap<usize, u32> = HashMap::new();
         for (e, edge) in b.edges.iter().enumerate() {

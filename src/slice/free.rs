@@ -194,13 +194,13 @@ impl Free {
         way: FaceMethod,
         leaf: usize,
     ) -> Option<Free> {
-        let strip = Strip::new(slice)?;
+        let mut strip = Strip::new(slice)?;
         let mut x = at.x.clone();
         if at.chart == Chart::Back {
             x += &Rat::from(2);
         }
         let cut = crate::face::Strip {
-            graphs: &strip.graphs,
+            graphs: std::mem::take(&mut strip.graphs),
             uprights: &strip.uprights,
             glue: &strip.glue,
             second: &strip.second,
@@ -211,7 +211,7 @@ impl Free {
             patience: patience(slice.arcs().len()),
             leaf,
         };
-        let (b, found) = boundary(&cut, &(x, at.t.clone()), how).ok()?;
+        let (b, found) = boundary(cut, &(x, at.t.clone()), how).ok()?;
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 
