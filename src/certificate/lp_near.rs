@@ -137,6 +137,11 @@ impl<'a> Near<'a> {
         })
     }
 
+    /// Whether the prices meet the costs of the free columns exactly.
+    pub(crate) fn exact(&self) -> bool {
+        self.missing.iter().all(|r| *r == 0.0)
+    }
+
     /// The bound that exact prices near these prove, which lies a little on the safe side.
     ///
     /// `order` is the order in which columns are eliminated, `margin` gives σ = 2⁻ᵐᵃʳᵍⁱⁿ.
@@ -146,7 +151,7 @@ impl<'a> Near<'a> {
 
     /// The same with the matrix made before.
     pub(crate) fn bound_with(&self, matrix: &Matrix, margin: u32) -> Result<Rat, Rejection> {
-        let change = if self.missing.iter().all(|r| *r == 0.0) {
+        let change = if self.exact() {
             vec![0.0; self.rows.len()]
         } else {
             self.changes(matrix, margin)?

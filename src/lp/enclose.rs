@@ -85,7 +85,7 @@ pub(crate) fn enclose(model: &Model, problem: &Problem, budget: &Budget) -> Opti
                 return Some(Enclosure {
                     primal: (point, value),
                     dual: (dual, bound),
-                    repair: Some(Repair { order, margin }),
+                    repair: (!near.exact()).then_some(Repair { order, margin }),
                     steps: central.steps,
                     near: x,
                 });

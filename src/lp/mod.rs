@@ -16,6 +16,7 @@ mod digits;
 mod enclose;
 pub(crate) mod field;
 mod float;
+mod implied;
 mod lift;
 pub(crate) mod lu;
 pub mod model;

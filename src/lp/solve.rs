@@ -133,7 +133,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         given.unwrap_or_else(|| Basis::slack(&problem))
     };
     if options.accuracy == Accuracy::Bounds && Known::may_guess(model) {
-        known.guess(model, &guess.0, &guess.1);
+        known.guess(model, &guess.0, &guess.1, budget);
         if known.closed() {
             let mut out = Outcome::undecided("");
             known.publish(model, true, &mut out);
@@ -179,11 +179,13 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err((_, last)) => {
-            let mut out = Outcome::undecided("a limit was reached");
-            out.basis = Some(Places::of(&last, problem.n));
             if !known.closed() {
-                known.guess(model, &guess.0, &guess.1);
+                let grace = Budget::new(options.time_limit.map(grace), options.memory_limit, None);
+                known.guess(model, &guess.0, &guess.1, &grace);
             }
+            let reason = format!("a limit was reached{}", known.missing(model));
+            let mut out = Outcome::undecided(&reason);
+            out.basis = Some(Places::of(&last, problem.n));
             known.publish(model, options.accuracy == Accuracy::Bounds, &mut out);
             out
         }
@@ -194,6 +196,11 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     outcome.float_iterations = iterations + refiner.iterations;
     outcome.exact_pivots = effort.pivots;
     outcome
+}
+
+/// Time for putting bounds together once a limit was reached.
+fn grace(limit: Duration) -> Duration {
+    (limit / 10).max(Duration::from_millis(50))
 }
 
 /// What floating point says, with nothing to prove it.
