@@ -405,12 +405,12 @@ fn determinism() {
     }
 }
 
-/// `Bounds` gives an enclosure that holds the optimum, is narrow, and is proven; a time limit
-/// gives one that holds it and is proven.
+/// `Bounds` gives an enclosure that holds the optimum, is narrow, and is proven; limits on time
+/// and on memory give one that holds it and is proven.
 #[test]
 fn bounds_enclose() {
     let mut r = Random(0x600d_600d);
-    let (mut narrow, mut ended) = (0, 0);
+    let (mut narrow, mut ended, mut limited) = (0, 0, [0; 3]);
     for k in 0..runs(1e4) {
         let model = if k % 16 == 0 {
             banded(&mut r, 12)
@@ -418,17 +418,21 @@ fn bounds_enclose() {
             random_model(&mut r)
         };
         let exact = solved(&model, Method::Warm);
-        for (accuracy, limit) in [
-            (Accuracy::Bounds, None),
-            (Accuracy::Exact, Some(std::time::Duration::ZERO)),
-        ] {
+        for kind in [Kind::Bounds, Kind::Time, Kind::Memory] {
+            let bounds = kind == Kind::Bounds;
             let options = Options {
-                accuracy,
-                time_limit: limit,
+                accuracy: if bounds {
+                    Accuracy::Bounds
+                } else {
+                    Accuracy::Exact
+                },
+                time_limit: (kind == Kind::Time).then_some(std::time::Duration::ZERO),
+                memory_limit: (kind == Kind::Memory).then_some(0),
                 ..Options::default()
             };
             let out = solve(&model, &options);
-            if limit.is_none() {
+            limited[kind as usize] += u64::from(out.status == Status::Undecided);
+            if bounds {
                 assert_eq!(out.status, exact.status);
             }
             if let Some(claim) = Claim::of(&out) {
@@ -442,7 +446,7 @@ fn bounds_enclose() {
             };
             assert!(low.as_ref().is_none_or(|l| l <= optimum), "{out:?}");
             assert!(high.as_ref().is_none_or(|h| h >= optimum), "{out:?}");
-            if limit.is_none() {
+            if bounds {
                 let (Some(low), Some(high)) = (low, high) else {
                     panic!("{out:?}");
                 };
@@ -455,6 +459,19 @@ fn bounds_enclose() {
         }
     }
     assert!(runs(1e4) < 50 || ended > 10, "{narrow} {ended}");
+    assert_eq!(limited[Kind::Bounds as usize], 0);
+    assert!(
+        runs(1e4) < 50 || limited[1] > 10 && limited[2] > 10,
+        "{limited:?}"
+    );
+}
+
+/// What a run of [`bounds_enclose`] is limited by.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Bounds,
+    Time,
+    Memory,
 }
 
 fn vector(v: &[i64]) -> Vector {

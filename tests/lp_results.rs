@@ -191,3 +191,47 @@ fn what_is_no_result_is_said_so() {
         );
     }
 }
+
+/// What a limit left open is verified where it claims bounds, and is neither right nor wrong where
+/// it claims nothing.
+#[test]
+fn undecided_results_are_judged_by_what_they_claim() {
+    let folder = folder("undecided", OPTIMAL);
+    for limit in ["--time-limit", "--memory-limit"] {
+        let output = snapfit(&folder, &["lp", "m.lp", "-o", "r.json", limit, "0"]);
+        let text = fs::read(folder.join("r.json")).unwrap();
+        let right: Value = serde_json::from_slice(&text).unwrap();
+        // So small a program may be decided by bounds that meet.
+        let open = right["status"] == "undecided";
+        assert_eq!(output.status.code(), Some(if open { 3 } else { 0 }));
+        assert!(!right["bounds"]["lower"].is_null(), "{limit}: {right}");
+        let (status, reason) = verdict(&folder, &right);
+        assert_eq!((status, reason.contains("undecided")), (Some(0), open));
+    }
+    let output = snapfit(
+        &folder,
+        &["lp", "m.lp", "-o", "r.json", "--time-limit", "0"],
+    );
+    assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));
+    let text = fs::read(folder.join("r.json")).unwrap();
+    let right: Value = serde_json::from_slice(&text).unwrap();
+    // More than was proven.
+    let mut wrong = right.clone();
+    wrong["bounds"]["lower"] = json!("111/10");
+    wrong["bounds"]["upper"] = json!("111/10");
+    assert_eq!(verdict(&folder, &wrong).0, Some(4));
+    // Bounds without their proof.
+    wrong = right.clone();
+    wrong["certificate"] = Value::Null;
+    assert_eq!(verdict(&folder, &wrong).0, Some(4));
+    // Nothing.
+    for end in ["lower", "upper"] {
+        wrong["bounds"][end] = Value::Null;
+    }
+    let (status, reason) = verdict(&folder, &wrong);
+    assert_eq!(status, Some(3));
+    assert!(reason.contains("nothing"), "{reason}");
+    // An optimum without a proof is no undecided result.
+    wrong["status"] = json!("optimal");
+    assert_eq!(verdict(&folder, &wrong).0, Some(4));
+}

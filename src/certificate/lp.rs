@@ -7,12 +7,14 @@
 //! - *infeasible*: prices with which the interval of y·(rows' activities) misses that of
 //!   (Aᵀy)·(columns' values), though the two are one number.
 //! - *unbounded*: a feasible point and a direction that never leaves the bounds and improves.
-//! - *bounds*: a feasible point and prices whose dual objective is the other end.
+//! - *bounds*: a feasible point and prices whose dual objective is the other end; prices may be
+//!   those of the module `lp_near`, which are exact but for a remainder that it accounts for.
 //! - *basis*: see the module `lp_basis`.
 //!
 //! All sums are of integers over common denominators.
 
 use super::lp_basis;
+use super::lp_near::Near;
 use crate::lp::{Certificate, Model, Outcome, Range, Status, Vector};
 use crate::number::{Int, Rat};
 
@@ -105,25 +107,8 @@ pub fn verify(model: &Model, claim: &Claim) -> Result<(), Rejection> {
             Point::new(model, point)?.feasible(model)?;
             Point::new(model, ray)?.recedes(model)
         }
-        (Certificate::Bounds { primal, dual }, Status::Optimal | Status::Undecided) => {
-            let above = match primal {
-                Some(v) => {
-                    let x = Point::new(model, v)?;
-                    x.feasible(model)?;
-                    Some(x.objective(model))
-                }
-                None => None,
-            };
-            let below = match dual {
-                Some(v) => Some(Prices::new(model, v)?.bound(model)?),
-                None => None,
-            };
-            let proven = if model.maximise {
-                (above, below)
-            } else {
-                (below, above)
-            };
-            if proven == claim.enclosure {
+        (bounds @ Certificate::Bounds { .. }, Status::Optimal | Status::Undecided) => {
+            if proven(model, bounds)? == claim.enclosure {
                 Ok(())
             } else {
                 reject("the enclosure claimed is not the one proven")
@@ -131,6 +116,50 @@ pub fn verify(model: &Model, claim: &Claim) -> Result<(), Rejection> {
         }
         _ => reject("the certificate is of another kind than the status"),
     }
+}
+
+/// The lower and the upper end of the optimum that a certificate of bounds proves; None where it
+/// offers nothing for that end.
+///
+/// # Errors
+/// Why it proves nothing, or that it is of another kind.
+pub fn proven(
+    model: &Model,
+    certificate: &Certificate,
+) -> Result<(Option<Rat>, Option<Rat>), Rejection> {
+    let Certificate::Bounds {
+        primal,
+        dual,
+        repair,
+    } = certificate
+    else {
+        return reject("the certificate is not one of bounds");
+    };
+    let point = match primal {
+        Some(v) => Some(worth(model, v)?),
+        None => None,
+    };
+    let prices = match (dual, repair) {
+        (Some(v), None) => Some(Prices::new(model, v)?.bound(model)?),
+        (Some(v), Some(r)) => {
+            let near = Near::new(model, Prices::new(model, v)?)?;
+            Some(near.bound(&r.order, r.margin)?)
+        }
+        (None, None) => None,
+        (None, Some(_)) => return reject("there are no prices to repair"),
+    };
+    Ok(if model.maximise {
+        (point, prices)
+    } else {
+        (prices, point)
+    })
+}
+
+/// The objective of a point, which must be feasible.
+pub(crate) fn worth(model: &Model, point: &Vector) -> Result<Rat, Rejection> {
+    let x = Point::new(model, point)?;
+    x.feasible(model)?;
+    Ok(x.objective(model))
 }
 
 fn objective_is(claim: &Claim, value: &Rat) -> Result<(), Rejection> {
@@ -297,19 +326,19 @@ impl Point {
 }
 
 /// Prices of the rows over one denominator.
-pub(super) struct Prices {
-    y: Vec<Int>,
-    denominator: Int,
+pub(crate) struct Prices {
+    pub(super) y: Vec<Int>,
+    pub(super) denominator: Int,
 }
 
 impl Prices {
-    pub(super) fn new(model: &Model, v: &Vector) -> Result<Prices, Rejection> {
+    pub(crate) fn new(model: &Model, v: &Vector) -> Result<Prices, Rejection> {
         let (y, denominator) = integers(v, model.rows.len())?;
         Ok(Prices { y, denominator })
     }
 
     /// (cost − Aᵀy)ⱼ as an integer over a positive one.
-    fn reduced(&self, model: &Model, j: usize, with_cost: bool) -> (Int, Int) {
+    pub(super) fn reduced(&self, model: &Model, j: usize, with_cost: bool) -> (Int, Int) {
         let c = &model.columns[j];
         let mut scale = c.cost.denom().clone();
         for (_, a) in &c.entries {
@@ -355,8 +384,13 @@ impl Prices {
     }
 
     /// (low, high) of y·s over the rows' ranges less (Aᵀy)·x over the columns'; what is missing
-    /// is infinite. `with_cost` adds c·x.
-    fn extent(&self, model: &Model, with_cost: bool) -> (Option<Rat>, Option<Rat>) {
+    /// is infinite. `with_cost` adds c·x; columns to `skip` are left out.
+    fn extent(
+        &self,
+        model: &Model,
+        with_cost: bool,
+        skip: impl Fn(usize) -> bool,
+    ) -> (Option<Rat>, Option<Rat>) {
         let mut ends = [Some(Sum::default()), Some(Sum::default())];
         let mut add = |value: &Int, scale: &Int, range: &Range| {
             if value.is_zero() {
@@ -383,8 +417,10 @@ impl Prices {
             add(y, &self.denominator, &r.range);
         }
         for (j, c) in model.columns.iter().enumerate() {
-            let (d, scale) = self.reduced(model, j, with_cost);
-            add(&d, &scale, &c.range);
+            if !skip(j) {
+                let (d, scale) = self.reduced(model, j, with_cost);
+                add(&d, &scale, &c.range);
+            }
         }
         let [low, high] = ends;
         (low.map(|s| s.value()), high.map(|s| s.value()))
@@ -392,7 +428,7 @@ impl Prices {
 
     /// Zero is not within the extent of y·s − (Aᵀy)·x, which is zero.
     fn contradictory(&self, model: &Model) -> Result<(), Rejection> {
-        let (low, high) = self.extent(model, false);
+        let (low, high) = self.extent(model, false, |_| false);
         if low.is_some_and(|l| l.sign() > 0) || high.is_some_and(|h| h.sign() < 0) {
             Ok(())
         } else {
@@ -402,7 +438,16 @@ impl Prices {
 
     /// The bound on the objective: c·x = (c − Aᵀy)·x + y·s at its least (greatest).
     pub(super) fn bound(&self, model: &Model) -> Result<Rat, Rejection> {
-        let (low, high) = self.extent(model, true);
+        self.bound_but(model, |_| false)
+    }
+
+    /// The same for columns to `skip` whose reduced costs are known to be zero.
+    pub(super) fn bound_but(
+        &self,
+        model: &Model,
+        skip: impl Fn(usize) -> bool,
+    ) -> Result<Rat, Rejection> {
+        let (low, high) = self.extent(model, true, skip);
         match if model.maximise { high } else { low } {
             Some(v) => Ok(&model.constant + &v),
             None => reject("the prices bound nothing"),

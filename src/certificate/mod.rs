@@ -4,4 +4,5 @@
 pub mod lp;
 mod lp_basis;
 mod lp_digits;
+pub(crate) mod lp_near;
 pub mod lp_result;

@@ -5,10 +5,11 @@
 //! 1/100, dovetail tabs on its right and top, sockets on its left and bottom, so that faces stand
 //! 1/50 apart. In `jit` every block is shifted inside its clearance, in `jrot` shifted and turned,
 //! in `ring` bent round a circle. These four name their contacts (as the nominal block has them);
-//! the others leave it to closeness.
+//! the others leave it to closeness. `robots` holds the families of robots.
 
 use super::random::Pcg64;
-use super::types::{Body, Contact, Hold, Joint, StepRules, Structure, Term, View};
+use super::robots::{flock, tree};
+use super::types::{Body, Contact, Hold, Joint, StepRules, Structure, Term};
 use crate::geometry::Vec2;
 use crate::number::Rat;
 
@@ -21,7 +22,8 @@ pub const FAMILIES: &[(&str, &str)] = &[
     ("chain", "blocks in a row, one dovetail between two"),
     ("wall", "bricks in running bond"),
     ("can", "the outline of a can, its top pressed in"),
-    ("flock", "a tree of robots that keep each other in view"),
+    ("flock", "robots that keep each other in view"),
+    ("tree", "robots on round hinges, branching as the seed says"),
 ];
 
 /// Most bodies that are generated.
@@ -44,8 +46,9 @@ pub fn generate(family: &str, bodies: usize, seed: u64) -> Result<Structure, Str
         "grid" | "jit" | "jrot" | "ring" => Ok(lattice(family, bodies, seed)),
         "chain" => Ok(chain(bodies)),
         "wall" => Ok(wall(bodies)),
-        "can" => can(bodies),
+        "can" => Ok(can(bodies)),
         "flock" => Ok(flock(bodies)),
+        "tree" => Ok(tree(bodies, seed)),
         _ => {
             let names: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
             Err(format!(
@@ -358,20 +361,21 @@ fn wall(n: usize) -> Structure {
 }
 
 /// The outline of a can, one block thick: its bottom stands fixed, its top's middle is pressed
-/// down.
-fn can(n: usize) -> Result<Structure, String> {
-    if !n.is_multiple_of(2) {
-        return Err("the outline of a can has an even number of blocks".to_owned());
-    }
-    // n = 2 (w + h) − 4, about half as wide as high.
+/// down. A closed ring of blocks on a lattice has an even number of them; of an odd number the
+/// last one is the can's tab, which stands on its top beside the middle.
+fn can(n: usize) -> Structure {
+    // n = 2 (w + h) − 4 without the tab, about half as wide as high.
     let sum = n / 2 + 2;
     let w = (sum / 3).max(3);
     let h = sum - w;
-    let inside =
-        |i: usize, j: usize| i < w && j < h && (i == 0 || j == 0 || i + 1 == w || j + 1 == h);
+    let tab = (n % 2 == 1).then_some((w / 2 - 1, h));
+    let inside = |i: usize, j: usize| {
+        let edge = i == 0 || j == 0 || i + 1 == w || j + 1 == h;
+        (i < w && j < h && edge) || tab == Some((i, j))
+    };
     let mut bodies = Vec::with_capacity(n);
     let mut pressed = 0;
-    for j in 0..h {
+    for j in 0..=h {
         for i in 0..w {
             if !inside(i, j) {
                 continue;
@@ -394,53 +398,5 @@ fn can(n: usize) -> Result<Structure, String> {
         dy: Rat::from(-1),
         dtheta: Rat::zero(),
     };
-    Ok(structure(format!("can{n}"), bodies, None, vec![down]))
-}
-
-/// Robots in rows behind a leader, each with a camera on its front that keeps the marker on the
-/// back of a robot before it in view. The flock is to move towards the leader's x.
-fn flock(n: usize) -> Structure {
-    let half = Rat::frac(1, 2);
-    let square: Vec<Cent> = vec![(50, -50), (50, 50), (-50, 50), (-50, -50)];
-    let mut bodies = Vec::with_capacity(n);
-    let mut views = Vec::new();
-    let mut objective = Vec::new();
-    let (mut row, mut column) = (0usize, 0usize);
-    for k in 0..n {
-        // Row r holds r + 1 robots, 3 apart, centred behind the leader.
-        let x = &Rat::from(3 * column as i64) - &Rat::frac(3 * row as i64, 2);
-        let mut robot = body(format!("robot{k}"), &square, (0, -3 * row as i64), k == 0);
-        robot.position.x = x.clone();
-        bodies.push(robot);
-        if row > 0 {
-            // The row before begins at row·(row − 1)/2.
-            let before = row * (row - 1) / 2 + column.min(row - 1);
-            let vec = |x: Rat, y: Rat| Vec2::new(x, y);
-            views.push(View {
-                body: k,
-                camera: vec(Rat::zero(), half.clone()),
-                left: vec(Rat::from(-1), Rat::one()),
-                right: vec(Rat::one(), Rat::one()),
-                far: Some(vec(Rat::zero(), Rat::from(4))),
-                of: before,
-                marker: vec(Rat::zero(), -&half),
-            });
-        }
-        if k > 0 {
-            objective.push(Term::Towards {
-                body: k,
-                x: Rat::zero(),
-            });
-        }
-        column += 1;
-        if column > row {
-            (row, column) = (row + 1, 0);
-        }
-    }
-    let mut s = structure(format!("flock{n}"), bodies, None, objective);
-    s.nearest = Some(5);
-    s.views = views;
-    s.step.rotation_limit = Some(Rat::frac(1, 10));
-    s.step.violation = Rat::frac(1, 100);
-    s
+    structure(format!("can{n}"), bodies, None, vec![down])
 }

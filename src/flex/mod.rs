@@ -14,8 +14,11 @@
 //! | `model` | what are the distances, gradients and objective there? |
 //! | `station`, `grain` | where are gradients taken, and how are poses rounded? |
 //! | `bend` | along which curve is a direction followed? |
+//! | `run`, `limits` | when does stepping go on, and when does it end? |
 //! | `step` | how far may a step go, and where does it end? |
-//! | `generate` | the paper's families of structures |
+//! | `safe`, `motion` | which part of a step is proven free of collision? |
+//! | `outcome` | how and why did a run end? |
+//! | `generate`, `robots` | the paper's families of structures |
 //!
 //! Configurations are rational throughout. What doubles do is to propose: a direction, a length.
 //! Whether a configuration respects its constraints is decided by exact integers.
@@ -30,10 +33,13 @@ mod limits;
 mod model;
 mod motion;
 mod mps;
+mod outcome;
 mod pairs;
 mod random;
 mod read;
 pub mod report;
+mod robots;
+mod run;
 mod safe;
 mod schema;
 mod settle;
@@ -47,10 +53,11 @@ mod write;
 pub use bound::{OuterBound, outer_bound};
 pub use motion::{Contact as FirstContact, ProofSize};
 pub use mps::to_mps;
+pub use outcome::{Ending, Flexed, Step, Violation, Why};
 pub use pairs::{Facing, Pair, Plane, Point};
 pub use read::{Guise, MAX_STEPS, StructureFile, guise, is_structure, read_structure};
 pub use schema::structure_schema;
 pub use shape::Pose;
-pub use step::{Corners, Ending, FlexOptions, FlexProgress, Flexed, Step, Violation, flex};
+pub use step::{Corners, FlexOptions, FlexProgress, flex};
 pub use types::*;
 pub use write::structure_to_toml;

@@ -1,7 +1,7 @@
 //! Results as JSON, in the words of the contract.
 
 use super::bound::OuterBound;
-use super::step::{Ending, Flexed};
+use super::outcome::{Ending, Flexed};
 use super::types::Structure;
 use crate::report::Num;
 use serde::Serialize;
@@ -24,6 +24,8 @@ pub struct FlexDocument {
     pub iterations: usize,
     /// How stepping ended.
     pub outcome: &'static str,
+    /// Why it ended there, in a sentence.
+    pub reason: String,
     /// The weighted displacement reached, exact.
     pub displacement: Num,
     /// The largest violation at the end.
@@ -56,6 +58,10 @@ pub struct StepDocument {
     pub gain: Num,
     /// Rows of the program.
     pub rows: usize,
+    /// Bits that the geometry of the program's gradients was rounded to before they were computed,
+    /// exactly, from it; null where nothing was rounded. What the certificates prove is the
+    /// optimum of the program with these gradients.
+    pub gradient_bits: Option<u32>,
     /// Wall-clock seconds.
     pub seconds: f64,
     /// Of these, for pairs and rows.
@@ -172,6 +178,7 @@ impl FlexDocument {
             columns: flexed.columns,
             iterations: flexed.steps.len(),
             outcome: flexed.ending.word(),
+            reason: flexed.why.to_string(),
             displacement: Num::of_rat(&flexed.displacement),
             violation: Num::of(&flexed.violation.value()),
             steps: flexed
@@ -182,6 +189,7 @@ impl FlexDocument {
                     step: Num::of_rat(&s.scale),
                     gain: Num::of_rat(&s.gain),
                     rows: s.rows,
+                    gradient_bits: s.gradient_bits,
                     seconds: s.seconds,
                     model_seconds: s.model_seconds,
                     programs: s.programs,

@@ -59,6 +59,11 @@ impl Stations {
         }
     }
 
+    /// Bits of the geometry that gradients are taken from; None where that is exact.
+    pub(crate) fn bits(&self) -> Option<u32> {
+        (!self.start).then_some(BITS.unsigned_abs())
+    }
+
     /// Lets the stations follow the bodies, if any has moved away from its own.
     pub(crate) fn follow(&mut self, scaffold: &Scaffold, poses: &[Pose], placed: &[Placed]) {
         self.start &= poses == scaffold.start;

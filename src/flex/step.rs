@@ -14,18 +14,17 @@
 //! the same exact test, since it judges the rounded configuration.
 
 use super::bend::Bend;
-use super::branch::{self, Solved};
+use super::branch::Solved;
 use super::grain::Grain;
-use super::limits::Limits;
 use super::model::{Row, Scaffold};
-use super::motion::{Contact, Motion, ProofSize};
+use super::outcome::{Flexed, Violation};
 use super::pairs::{Pair, Selection, select};
 use super::settle::Tight;
 use super::shape::{Placed, Pose, double};
 use super::station::{Rounding, Stations};
 use super::types::{Path, Structure};
 use crate::lp::{self, Place, Places, Status};
-use crate::number::{Algebraic, Int, Poly, Rat};
+use crate::number::Rat;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
@@ -76,109 +75,6 @@ pub struct FlexProgress {
     pub gain: f64,
 }
 
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ending {
-    /// A step gained less than asked.
-    Converged,
-    /// The number of steps was reached.
-    MostSteps,
-    /// The linear program is unbounded: something comes apart.
-    Unbounded,
-    /// No motion restores the constraints.
-    Infeasible,
-    /// The time was over.
-    Undecided,
-}
-
-impl Ending {
-    /// The word used in results.
-    pub fn word(self) -> &'static str {
-        match self {
-            Ending::Converged => "converged",
-            Ending::MostSteps => "most-steps",
-            Ending::Unbounded => "unbounded",
-            Ending::Infeasible => "infeasible",
-            Ending::Undecided => "undecided",
-        }
-    }
-}
-
-/// One step.
-#[derive(Clone, Debug)]
-pub struct Step {
-    /// The exact optimum of the linear program (for floats and bounds: the best value known).
-    pub objective: Rat,
-    /// A proven enclosure of the optimum.
-    pub enclosure: (Option<Rat>, Option<Rat>),
-    /// The scale at which its direction was applied.
-    pub scale: Rat,
-    /// Rows of the program.
-    pub rows: usize,
-    /// Facing corners.
-    pub facing: usize,
-    /// Programs solved for this step.
-    pub programs: usize,
-    /// Pivots of the exact method, over these programs' last.
-    pub exact_pivots: u64,
-    /// Wall-clock time of the step: model, program, search.
-    pub seconds: f64,
-    /// Part of it that went into pairs and rows.
-    pub model_seconds: f64,
-    /// Whether the certificate passed the verifier; None where it was not asked.
-    pub verified: Option<bool>,
-    /// The certificate as JSON; null where there is none.
-    pub certificate: serde_json::Value,
-    /// What the proof of a safe step looked at; None where nothing was proven.
-    pub proof: Option<ProofSize>,
-    /// Where asked for, the first contact of the whole path, if it comes in this step.
-    pub contact: Option<Contact>,
-    /// Exact gain in displacement.
-    pub gain: Rat,
-    /// Bits of the longest number of any pose afterwards.
-    pub bits: u64,
-}
-
-/// The result of a run.
-#[derive(Clone, Debug)]
-pub struct Flexed {
-    /// How it ended.
-    pub ending: Ending,
-    /// The steps, in order.
-    pub steps: Vec<Step>,
-    /// The configurations: the start, then one after each step.
-    pub configurations: Vec<Vec<Pose>>,
-    /// The weighted displacement, exact.
-    pub displacement: Rat,
-    /// The largest violation at the end (a distance), zero if there is none.
-    pub violation: Violation,
-    /// Columns of the programs.
-    pub columns: usize,
-}
-
-/// A distance whose square is rational.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Violation {
-    /// Its square.
-    pub square: Rat,
-    /// The constraint, where one is violated.
-    pub pair: Option<Pair>,
-}
-
-impl Violation {
-    /// The distance itself.
-    pub fn value(&self) -> Algebraic {
-        let s = &self.square;
-        if let (Some(n), Some(d)) = (s.numer().sqrt_exact(), s.denom().sqrt_exact()) {
-            return Algebraic::from(Rat::new(n, d));
-        }
-        let p = Poly::new(vec![-s.numer(), Int::zero(), s.denom().clone()]);
-        let roots = p.real_roots();
-        let largest = roots.into_iter().next_back();
-        largest.unwrap_or_else(|| Algebraic::from(Rat::zero()))
-    }
-}
-
 /// A run in the making.
 pub(crate) struct Run<'a> {
     pub(crate) structure: &'a Structure,
@@ -191,32 +87,18 @@ pub(crate) struct Run<'a> {
     /// What distances and poses are rounded by: a part of the gain asked for, since what rounding
     /// takes from bodies in a row adds up.
     fine: f64,
+    /// On a safe path: how far a body may turn in a step, where that was found to help.
+    pub(crate) trust: Option<f64>,
     /// The last optimal basis: places of the columns, and of rows by pair.
     memory: RefCell<Option<Memory>>,
 }
 
 type Memory = (Vec<Place>, HashMap<Pair, Place>);
 
-/// What a step took.
-struct Taken {
-    model_seconds: f64,
-    rows: usize,
-    pairs: Vec<Pair>,
-    solved: Solved,
-    programs: usize,
-    scale: Rat,
-    next: Option<Vec<Pose>>,
-    proof: Option<ProofSize>,
-    /// What a safe step's program promised; zero for a fast one.
-    promise: f64,
-}
-
 /// The grain of distances: this part of the gain at which stepping ends, over the bodies.
 const FINE: f64 = 0.25;
 /// Of what a program promises, the part of a direction followed must gain this much at least.
-const KEEPS: f64 = 0.1;
-/// A restoration that takes less than this part of the displacement is little.
-const LITTLE: f64 = 1e-3;
+pub(crate) const KEEPS: f64 = 0.1;
 /// Bisections of a step's scale.
 const HALVINGS: usize = 8;
 
@@ -239,6 +121,7 @@ impl<'a> Run<'a> {
             fine,
             scaffold,
             options,
+            trust: None,
             memory: RefCell::new(None),
             deadline: options
                 .time_limit
@@ -246,7 +129,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn late(&self) -> bool {
+    pub(crate) fn late(&self) -> bool {
         self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
@@ -288,181 +171,6 @@ impl<'a> Run<'a> {
         if let (Status::Optimal, Some(basis)) = (outcome.status, &outcome.basis) {
             let places = rows.iter().map(|r| r.pair).zip(basis.rows.iter().copied());
             *self.memory.borrow_mut() = Some((basis.columns.clone(), places.collect()));
-        }
-    }
-
-    fn flex(mut self) -> Flexed {
-        let rules = &self.structure.step;
-        let mut poses = self.scaffold.start.clone();
-        let mut out = Flexed {
-            ending: Ending::MostSteps,
-            steps: Vec::new(),
-            configurations: vec![poses.clone()],
-            displacement: Rat::zero(),
-            violation: Violation {
-                square: Rat::zero(),
-                pair: None,
-            },
-            columns: self.scaffold.column_count,
-        };
-        let mut last_gain = 0.0;
-        // Whether no contact came yet.
-        let mut clear = true;
-        let mut pairs = Vec::new();
-        let mut limits = Limits::default();
-        for k in 0..rules.most {
-            if self.late() {
-                out.ending = Ending::Undecided;
-                break;
-            }
-            let begin = Instant::now();
-            let placed = self.scaffold.place(&poses);
-            self.stations.follow(&self.scaffold, &poses, &placed);
-            self.scaffold.turn_limits = limits.bounds();
-            let taken = if rules.path == Path::Safe {
-                self.tell(k, &out, last_gain, out.steps.last().map_or(0, |s| s.rows));
-                let safe = self.safe_step(&poses, &placed, k > 0);
-                Taken {
-                    model_seconds: 0.0,
-                    rows: safe.rows.len(),
-                    pairs: safe.rows.iter().map(|r| r.pair).collect(),
-                    solved: safe.solved,
-                    programs: safe.programs,
-                    scale: safe.scale,
-                    next: safe.next,
-                    proof: safe.proof,
-                    promise: safe.promise,
-                }
-            } else {
-                let selection = self.selection(&placed, k > 0);
-                let (pairs, rows) = self.rows(&selection, &placed);
-                let model_seconds = begin.elapsed().as_secs_f64();
-                self.tell(k, &out, last_gain, rows.len());
-                let solved = branch::solve(&self, &rows, &selection, &placed, &poses);
-                let next = solved
-                    .direction
-                    .as_ref()
-                    .map(|direction| self.search(&rows, &poses, direction, &solved));
-                let (scale, next) = next.unzip();
-                Taken {
-                    model_seconds,
-                    rows: rows.len(),
-                    pairs,
-                    programs: solved.programs,
-                    solved,
-                    scale: scale.unwrap_or_else(Rat::zero),
-                    next,
-                    proof: None,
-                    promise: 0.0,
-                }
-            };
-            pairs.clone_from(&taken.pairs);
-            if limits.active() && taken.solved.status == Status::Infeasible {
-                // What is to be restored takes more than the limits allow.
-                limits.lift();
-                continue;
-            }
-            let stopped = taken.next.is_none();
-            if stopped {
-                out.ending = match taken.solved.status {
-                    Status::Unbounded => Ending::Unbounded,
-                    Status::Infeasible => Ending::Infeasible,
-                    _ => Ending::Undecided,
-                };
-            }
-            let next = taken.next.unwrap_or_else(|| poses.clone());
-            let reached = self.scaffold.displacement(&next);
-            let gain = &reached - &out.displacement;
-            if rules.path == Path::Safe && !stopped && gain.sign() < 0 {
-                // Nothing is violated on a safe path, so nothing calls for a step back: it comes
-                // from what is held back, and there is nothing more to gain.
-                out.ending = self.settled(taken.promise);
-                break;
-            }
-            let contact = if clear && self.options.contact && taken.proof.is_none() {
-                Motion::new(&self.scaffold, &poses, &next).first_contact()
-            } else {
-                None
-            };
-            clear &= contact.is_none();
-            let limited = limits.active();
-            if rules.path == Path::Fast && !stopped {
-                let angle = |p: &Pose| 2.0 * double(&p.tan_half).atan();
-                let each = poses.iter().zip(&next);
-                let turned: Vec<f64> = each.map(|(a, b)| angle(b) - angle(a)).collect();
-                let promise = double(&taken.solved.objective);
-                limits.learn(&turned, double(&taken.scale), promise, double(&gain));
-            }
-            if !stopped {
-                poses = next;
-                out.configurations.push(poses.clone());
-            }
-            out.displacement = reached;
-            out.steps.push(Step {
-                objective: taken.solved.objective,
-                enclosure: taken.solved.enclosure,
-                scale: taken.scale,
-                rows: taken.rows,
-                facing: taken.solved.facing,
-                programs: taken.programs,
-                exact_pivots: taken.solved.exact_pivots,
-                seconds: begin.elapsed().as_secs_f64(),
-                model_seconds: taken.model_seconds,
-                verified: taken.solved.verified,
-                certificate: taken.solved.certificate,
-                proof: taken.proof,
-                contact,
-                gain: gain.clone(),
-                bits: poses.iter().map(Pose::bits).max().unwrap_or(0),
-            });
-            if stopped {
-                break;
-            }
-            // A step that loses has restored constraints that the ones before overreached. If
-            // that was little, what the next would gain it would overreach again, over and over,
-            // and so it is if what was overreached and restored came to nothing.
-            let both = &gain + &Rat::from_f64(last_gain);
-            let little = -&gain < &out.displacement.abs() * &Rat::from_f64(LITTLE);
-            last_gain = double(&gain);
-            if gain < rules.gain && (-&gain < rules.gain || little || both < rules.gain) {
-                if limited {
-                    limits.lift();
-                    continue;
-                }
-                // A direction that cannot be followed at all shows nothing.
-                let stuck = out.steps.last().filter(|s| s.scale.is_zero());
-                let promise = stuck.map_or(taken.promise, |s| double(&s.objective));
-                out.ending = self.settled(promise);
-                break;
-            }
-        }
-        let placed = self.scaffold.place(&poses);
-        if pairs.is_empty() {
-            pairs = self.selection(&placed, true).pairs;
-        }
-        out.violation = self.worst(&pairs, &placed);
-        out
-    }
-
-    /// How a run ends that gains no more: converged, unless its program promised a step
-    /// much more than what could be proven.
-    fn settled(&self, promise: f64) -> Ending {
-        if promise > 10.0 * double(&self.structure.step.gain) {
-            Ending::Undecided
-        } else {
-            Ending::Converged
-        }
-    }
-
-    fn tell(&self, step: usize, out: &Flexed, gain: f64, rows: usize) {
-        if let Some(tell) = self.options.progress {
-            tell(FlexProgress {
-                step,
-                bodies: self.scaffold.forms.len(),
-                rows,
-                displacement: double(&out.displacement),
-                gain,
-            });
         }
     }
 
@@ -519,7 +227,7 @@ impl<'a> Run<'a> {
 
     /// The longest scale up to 1 that bisection finds to keep the violation allowed, and the
     /// configuration there.
-    fn search(
+    pub(super) fn search(
         &self,
         rows: &[Row],
         poses: &[Pose],

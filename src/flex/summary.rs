@@ -46,6 +46,7 @@ impl Display for FlexDocument {
             short(&self.displacement)
         )?;
         writeln!(f, "  outcome    {}", ending(self.outcome))?;
+        writeln!(f, "  because    {}", self.reason)?;
         writeln!(
             f,
             "  programs   {} rows × {} columns, {}, accuracy {}",
@@ -59,6 +60,12 @@ impl Display for FlexDocument {
             _ => "not every program has a verified certificate",
         };
         writeln!(f, "  proof      {checked}")?;
+        if let Some(bits) = self.steps.iter().find_map(|s| s.gradient_bits) {
+            writeln!(
+                f,
+                "  gradients  exact in the first step, then of geometry rounded to {bits} bits"
+            )?;
+        }
         let path = if self.path == "safe" {
             "safe: the whole motion is proven free of collision"
         } else {

@@ -1,6 +1,7 @@
 //! The verbs `lp` and `verify`: arguments in, JSON out, an exit status back.
 
 use super::budget::Meter;
+use super::model::Model;
 use super::outcome::Status;
 use super::read::read_model;
 use super::report::{from_json, to_json};
@@ -69,6 +70,10 @@ pub enum AccuracyArg {
 
 /// Arguments of `snapfit verify`.
 #[derive(clap::Args, Clone, Debug)]
+#[command(
+    after_help = "Exit status: 0 all that the result claims is proven, which may be bounds only where it is \
+undecided; 2 bad usage or bad input; 3 the result is undecided and claims nothing; 4 rejected, with the reason."
+)]
 pub struct VerifyArgs {
     /// A result of `snapfit lp`; `-` is standard input
     pub result: PathBuf,
@@ -154,6 +159,48 @@ fn beside(model: &Path, result: &Path) -> PathBuf {
     }
 }
 
+/// The verdict on a result, the reason for it, and the exit status.
+///
+/// A result that is undecided and claims nothing is neither proven nor wrong: its verdict is
+/// "nothing claimed", with the exit status of what is not decided. One with bounds that hold is
+/// verified like any other.
+fn judge(model: &Model, result: &serde_json::Value) -> (&'static str, Option<String>, u8) {
+    let undecided = result["status"] == "undecided";
+    if undecided && claims_nothing(result) {
+        let why = "the result is undecided and claims nothing: there is nothing to check";
+        return ("nothing claimed", Some(why.to_string()), UNDECIDED);
+    }
+    let claim = match from_json(model, result) {
+        Ok(claim) => claim,
+        Err(e) => return ("rejected", Some(e), REJECTED),
+    };
+    match verify(model, &claim).and_then(|()| agrees(model, &claim, result)) {
+        Ok(()) if undecided => {
+            let what = match &claim.enclosure {
+                (Some(_), Some(_)) => "both its bounds hold",
+                _ => "its bound holds",
+            };
+            let why = format!("the result is undecided; {what}");
+            ("verified", Some(why), 0)
+        }
+        Ok(()) => ("verified", None, 0),
+        Err(e) => ("rejected", Some(e.0), REJECTED),
+    }
+}
+
+/// Whether a result has neither a number nor a proof.
+fn claims_nothing(result: &serde_json::Value) -> bool {
+    let claims = [
+        &result["objective"],
+        &result["certificate"],
+        &result["bounds"]["lower"],
+        &result["bounds"]["upper"],
+        &result["primal"],
+        &result["dual"],
+    ];
+    claims.iter().all(|v| v.is_null())
+}
+
 /// Runs `snapfit verify`; the result is the exit status.
 pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
     let result = match read(&args.result) {
@@ -192,13 +239,7 @@ pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
             Ok(m) => m,
         },
     };
-    let (verdict, reason, code) = match from_json(&model, &result) {
-        Err(e) => ("rejected", Some(e), REJECTED),
-        Ok(claim) => match verify(&model, &claim).and_then(|()| agrees(&model, &claim, &result)) {
-            Ok(()) => ("verified", None, 0),
-            Err(e) => ("rejected", Some(e.0), REJECTED),
-        },
-    };
+    let (verdict, reason, code) = judge(&model, &result);
     let verdict =
         serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] });
     match write(None, &format!("{verdict}\n")) {

@@ -13,8 +13,10 @@ mod basis;
 mod budget;
 pub mod cli;
 mod digits;
+mod enclose;
 pub(crate) mod field;
 mod float;
+mod implied;
 mod lift;
 pub(crate) mod lu;
 pub mod model;
@@ -31,6 +33,6 @@ mod solve;
 
 pub use budget::Meter;
 pub use model::{Column, Model, Range, Row};
-pub use outcome::{Certificate, Outcome, Place, Places, Status, Vector};
+pub use outcome::{Certificate, Outcome, Place, Places, Repair, Status, Vector};
 pub use read::{LpError, read_model};
 pub use solve::{Accuracy, Method, Options, solve};

@@ -168,7 +168,19 @@ pub enum Certificate {
         primal: Option<Vector>,
         /// Prices of the rows, if feasible ones are known.
         dual: Option<Vector>,
+        /// Given where the prices are only nearly feasible: what helps to prove that feasible
+        /// ones are so near that the bound holds as it stands.
+        repair: Option<Repair>,
     },
+}
+
+/// Hints for the proof that feasible prices are near given ones. None of it is trusted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repair {
+    /// The free columns in an order of elimination that leaves few entries.
+    pub order: Vec<u32>,
+    /// 2 to the power of minus this is below all eigenvalues of the scaled matrix of the rows.
+    pub margin: u32,
 }
 
 /// The result of solving a model.

@@ -1,7 +1,7 @@
 //! Results as JSON, and back again for the verifier.
 
 use super::model::Model;
-use super::outcome::{Certificate, Outcome, Place, Status, Vector};
+use super::outcome::{Certificate, Outcome, Place, Repair, Status, Vector};
 use crate::certificate::lp::Claim;
 use crate::number::{Int, Rat, literal};
 use serde_json::{Map, Value, json};
@@ -108,11 +108,22 @@ fn certificate(model: &Model, c: &Certificate) -> Value {
         Certificate::Unbounded { point, ray } => json!({
             "kind": "unbounded", "point": vector(point, column), "ray": vector(ray, column),
         }),
-        Certificate::Bounds { primal, dual } => json!({
-            "kind": "bounds",
-            "primal": primal.as_ref().map(|v| vector(v, column)),
-            "dual": dual.as_ref().map(|v| vector(v, row)),
-        }),
+        Certificate::Bounds {
+            primal,
+            dual,
+            repair,
+        } => {
+            let mut out = json!({
+                "kind": "bounds",
+                "primal": primal.as_ref().map(|v| vector(v, column)),
+                "dual": dual.as_ref().map(|v| vector(v, row)),
+            });
+            if let (Some(r), Some(map)) = (repair, out.as_object_mut()) {
+                let hints = json!({ "order": r.order, "margin": r.margin });
+                map.insert("repair".into(), hints);
+            }
+            out
+        }
     }
 }
 
@@ -179,6 +190,22 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
         "bounds" => Certificate::Bounds {
             primal: optional(&c["primal"], &columns)?,
             dual: optional(&c["dual"], &rows)?,
+            repair: match &c["repair"] {
+                Value::Null => None,
+                r => Some(Repair {
+                    order: r["order"]
+                        .as_array()
+                        .ok_or("`repair.order` is missing")?
+                        .iter()
+                        .map(|v| v.as_u64().and_then(|v| u32::try_from(v).ok()))
+                        .collect::<Option<_>>()
+                        .ok_or("`repair.order` holds indices of columns")?,
+                    margin: r["margin"]
+                        .as_u64()
+                        .and_then(|v| u32::try_from(v).ok())
+                        .ok_or("`repair.margin` is missing")?,
+                }),
+            },
         },
         other => return Err(format!("unknown kind of certificate `{other}`")),
     };

@@ -5,8 +5,11 @@
 //! both are computed exactly from whatever is at hand: doubles from floating point, or the basis
 //! that the exact method had reached when a limit stopped it. What cannot be proven is dropped.
 
+use super::budget::Budget;
+use super::enclose::Enclosure;
+use super::implied::Implied;
 use super::model::{Model, Range};
-use super::outcome::{Certificate, Outcome, Status, Vector};
+use super::outcome::{Certificate, Outcome, Repair, Status, Vector};
 use super::repair;
 use crate::number::{Int, Rat};
 
@@ -17,6 +20,10 @@ pub(crate) struct Known {
     primal: Option<(Vector, Rat)>,
     /// Prices and the bound that they prove.
     dual: Option<(Vector, Rat)>,
+    /// What the proof needs where the prices are only nearly feasible.
+    repair: Option<Repair>,
+    /// Where no prices were found, a column that no single row bounds.
+    open: Option<usize>,
 }
 
 /// Gap between the two ends, relative to the larger of 1 and their size, that counts as closed.
@@ -40,12 +47,22 @@ impl Known {
         let better = |old: &Rat| (value > *old) != model.maximise;
         if self.dual.as_ref().is_none_or(|(_, old)| better(old)) {
             self.dual = Some((prices, value));
+            self.repair = None;
         }
+    }
+
+    /// Takes in an enclosure whose ends are proven already.
+    pub(crate) fn enclosed(&mut self, ends: Enclosure) {
+        self.primal = Some(ends.primal);
+        self.dual = Some(ends.dual);
+        self.repair = ends.repair;
     }
 
     /// Takes in what doubles suggest: values of the columns and prices of the rows, both of which
     /// may be missing or wrong.
-    pub(crate) fn guess(&mut self, model: &Model, x: &[f64], y: &[f64]) {
+    ///
+    /// Where no prices at hand prove a bound, ones are made that do, within the `budget`.
+    pub(crate) fn guess(&mut self, model: &Model, x: &[f64], y: &[f64], budget: &Budget) {
         let rest: Vec<Rat> = model
             .columns
             .iter()
@@ -88,6 +105,33 @@ impl Known {
                 }
             }
         }
+        if self.dual.is_none() {
+            let implied = Implied::new(model);
+            for near in [exact(y, model.rows.len()), Some(Vec::new())] {
+                let near = near.as_deref();
+                let found = near.map(|y| implied.prices(model, y, budget));
+                if let Some(Ok(Some(y))) = found {
+                    self.prices(model, vector(&y));
+                }
+            }
+            self.open = implied.open();
+        }
+    }
+
+    /// What is not known of the two ends, as the end of a sentence; empty where both are.
+    pub(crate) fn missing(&self, model: &Model) -> String {
+        let mut out = String::new();
+        if self.primal.is_none() {
+            out.push_str("; no feasible point is known");
+        }
+        if self.dual.is_none() {
+            out.push_str("; no prices that bound the objective are known");
+            if let Some(j) = self.open {
+                let name = &model.columns[j].name;
+                out.push_str(&format!(", and no single row bounds column `{name}`"));
+            }
+        }
+        out
     }
 
     /// Takes in prices that doubles suggest.
@@ -145,7 +189,10 @@ impl Known {
             out.reason = None;
             out.objective = self.primal.as_ref().map(|p| p.1.clone());
         }
-        if met && let (Some((primal, value)), Some((dual, _))) = (&self.primal, &self.dual) {
+        if met
+            && self.repair.is_none()
+            && let (Some((primal, value)), Some((dual, _))) = (&self.primal, &self.dual)
+        {
             out.enclosure = (Some(value.clone()), Some(value.clone()));
             out.certificate = Some(Certificate::Optimal {
                 primal: primal.clone(),
@@ -165,6 +212,7 @@ impl Known {
         out.certificate = Some(Certificate::Bounds {
             primal: self.primal.map(|p| p.0),
             dual: self.dual.map(|d| d.0),
+            repair: self.repair,
         });
     }
 }

@@ -2,6 +2,7 @@
 
 use super::basis::{Basis, ColumnVector, Frame, RowVector};
 use super::budget::{Budget, Meter, Stage};
+use super::enclose;
 use super::float::{self, Refiner};
 use super::model::Model;
 use super::outcome::{Certificate, Outcome, Places, Status, VECTOR_BITS, conclude, point, prices};
@@ -98,9 +99,27 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut blame = None;
     let mut known = Known::default();
     let mut guess = (Vec::new(), Vec::new());
+    // Vectors that are to be written out are better exact.
+    if options.accuracy == Accuracy::Bounds
+        && options.method == Method::Warm
+        && !options.values
+        && given.is_none()
+        && let Some(found) = enclose::enclose(model, &problem, &budget.most())
+    {
+        iterations = found.steps;
+        let near = found.near.clone();
+        known.enclosed(found);
+        if known.closed() {
+            let mut out = Outcome::undecided("");
+            known.publish(model, true, &mut out);
+            out.float_iterations = iterations;
+            out.near = near;
+            return out;
+        }
+    }
     let start = if options.method == Method::Warm {
         let proposal = float::propose(&problem, given.as_ref(), &budget.most());
-        iterations = proposal.iterations;
+        iterations += proposal.iterations;
         blame = proposal.blame;
         guess = (proposal.point.clone(), proposal.prices.clone());
         if options.accuracy == Accuracy::Float {
@@ -114,7 +133,7 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         given.unwrap_or_else(|| Basis::slack(&problem))
     };
     if options.accuracy == Accuracy::Bounds && Known::may_guess(model) {
-        known.guess(model, &guess.0, &guess.1);
+        known.guess(model, &guess.0, &guess.1, budget);
         if known.closed() {
             let mut out = Outcome::undecided("");
             known.publish(model, true, &mut out);
@@ -160,11 +179,13 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     let mut outcome = match run {
         Ok(verdict) => conclude(model, &verdict, options.values),
         Err((_, last)) => {
-            let mut out = Outcome::undecided("a limit was reached");
-            out.basis = Some(Places::of(&last, problem.n));
             if !known.closed() {
-                known.guess(model, &guess.0, &guess.1);
+                let grace = Budget::new(options.time_limit.map(grace), options.memory_limit, None);
+                known.guess(model, &guess.0, &guess.1, &grace);
             }
+            let reason = format!("a limit was reached{}", known.missing(model));
+            let mut out = Outcome::undecided(&reason);
+            out.basis = Some(Places::of(&last, problem.n));
             known.publish(model, options.accuracy == Accuracy::Bounds, &mut out);
             out
         }
@@ -175,6 +196,11 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
     outcome.float_iterations = iterations + refiner.iterations;
     outcome.exact_pivots = effort.pivots;
     outcome
+}
+
+/// Time for putting bounds together once a limit was reached.
+fn grace(limit: Duration) -> Duration {
+    (limit / 10).max(Duration::from_millis(50))
 }
 
 /// What floating point says, with nothing to prove it.

@@ -41,8 +41,9 @@ impl<K: Kernel> Runner<'_, K> {
     }
 
     pub(super) fn finish(mut self, stop: Stop<K>) -> Run<K> {
+        let completed = matches!(stop, Stop::PhaseEnd(_));
         let (angle, end) = match stop {
-            Stop::PhaseEnd(angle) => (angle, None),
+            Stop::PhaseEnd(angle) | Stop::Over(angle) => (angle, None),
             Stop::Early {
                 kind,
                 at,
@@ -51,7 +52,7 @@ impl<K: Kernel> Runner<'_, K> {
             } => (angle, Some((kind, at, branches))),
         };
         let mut touching = Vec::new();
-        if end.is_none() {
+        if completed {
             let on = self.held.iter().map(|&h| self.slice.arc(h).curve).collect();
             let z = Point {
                 chart: angle.chart(),

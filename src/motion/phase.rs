@@ -54,7 +54,8 @@ pub struct Setting<'a> {
     pub friction: Option<&'a Rat>,
     /// Index of the phase.
     pub phase: usize,
-    /// An instant at which the orientation is wanted (the root's collision).
+    /// The instant at which the plan is over whatever the pawl does (the root's collision): the orientation
+    /// there is wanted, and nothing after it is worked out.
     pub probe: Option<&'a Rat>,
     /// Asked between events; true ends the run undecided.
     pub stop: &'a dyn Fn() -> bool,
@@ -167,9 +168,10 @@ pub fn run<K: Kernel>(
     r.finish(stop)
 }
 
-/// How a run stopped: at the phase's end (with the orientation), or before it.
+/// How a run stopped: at the phase's end (with the orientation), where the plan is over, or by itself before.
 pub(super) enum Stop<K: Kernel> {
     PhaseEnd(Angle<K>),
+    Over(Angle<K>),
     Early {
         kind: OutcomeKind,
         at: K::Time,
@@ -235,7 +237,9 @@ impl<K: Kernel> Runner<'_, K> {
             State::Rest => {
                 let hit = self.sight.next_touch(&self.clock);
                 let hit = hit.filter(|t| *t <= self.end);
-                self.probe(hit.as_ref());
+                if let Some(over) = self.probe(hit.as_ref()) {
+                    return Some(over);
+                }
                 let Some(t) = hit else {
                     return Some(self.complete(Angle::rest()));
                 };
@@ -258,10 +262,12 @@ impl<K: Kernel> Runner<'_, K> {
                     && t < self.end
                     && next.as_ref().is_none_or(|z| t < z.t)
                 {
-                    self.probe(Some(&t));
-                    return Some(self.stick(arc, half_turn, t));
+                    let over = self.probe(Some(&t));
+                    return over.or_else(|| Some(self.stick(arc, half_turn, t)));
                 }
-                self.probe(next.as_ref().map(|z| &z.t));
+                if let Some(over) = self.probe(next.as_ref().map(|z| &z.t)) {
+                    return Some(over);
+                }
                 match next {
                     Some(z) => (z, half_turn),
                     None => {
@@ -299,21 +305,27 @@ impl<K: Kernel> Runner<'_, K> {
         )
     }
 
-    /// Notes the orientation at the probe if the state passes it before `next`.
-    fn probe(&mut self, next: Option<&K::Time>) {
-        let Some(t) = self.probe_at.as_ref().filter(|_| self.probed.is_none()) else {
-            return;
-        };
+    /// Where the state passes the probe before `next`: notes the orientation there, and stops if that is before
+    /// the phase's end. What would happen later, nobody asks.
+    fn probe(&mut self, next: Option<&K::Time>) -> Option<Stop<K>> {
+        let t = self.probe_at.as_ref().filter(|_| self.probed.is_none())?;
         if next.is_some_and(|n| n.cmp_num(t).is_le()) {
-            return;
+            return None;
         }
-        self.probed = Some(match self.state {
+        let at = K::Time::of(t.clone());
+        let angle = match self.state {
             State::Rest => Angle::rest(),
             State::On { arc, half_turn, .. } => Angle {
                 half_turn,
-                x: self.position(arc, &K::Time::of(t.clone())),
+                x: self.position(arc, &at),
             },
-        });
+        };
+        self.probed = Some(angle.clone());
+        if self.end <= at {
+            return None;
+        }
+        self.cut(&at, &angle, &angle);
+        Some(Stop::Over(angle))
     }
 
     /// The next point at which anything meets the arc that the state follows.

@@ -6,7 +6,7 @@
 
 #[cfg(feature = "rug")]
 use super::backend::{Backend, backend};
-use super::int::gcd_u128;
+use super::words::gcd_u128;
 use num_bigint::{BigInt, BigUint, Sign};
 use num_integer::Integer as _;
 use num_traits::ToPrimitive;
@@ -75,6 +75,16 @@ impl Long {
             return Gmp(rug::Integer::from(v));
         }
         Num(BigInt::from(v))
+    }
+    /// From the words of the absolute value, least significant first.
+    pub(super) fn of_words(minus: bool, words: &[u64]) -> Long {
+        #[cfg(feature = "rug")]
+        if backend() == Backend::Rug {
+            let v = rug::Integer::from_digits(words, rug::integer::Order::Lsf);
+            return Gmp(if minus { -v } else { v });
+        }
+        let sign = if minus { Sign::Minus } else { Sign::Plus };
+        Num(BigInt::from_biguint(sign, from_limbs(words)))
     }
     /// A decimal number without a sign.
     pub(super) fn parse(digits: &str) -> Option<Long> {
@@ -243,6 +253,7 @@ impl Long {
             },
             |a: &rug::Integer| rug::Integer::from(&*a.as_abs() % m).to_u128()
         );
+        // Less than m, which is a u128.
         r.expect("a remainder is less than the divisor")
     }
     pub(super) fn gcd(&self, o: &Long) -> Long {

@@ -6,8 +6,8 @@
 
 use super::algebraic::Algebraic;
 use super::filter::{self, Stage};
-use super::int::ops;
 use super::isolate::isolate;
+use super::ops::ops;
 use super::quadratic::quadratic_roots;
 use super::{Int, Interval, Rat, factor, gcd};
 use std::fmt;
@@ -261,6 +261,13 @@ impl Poly {
     }
     /// Primitive greatest common divisor; gcd(0, 0) = 0.
     pub fn gcd(&self, other: &Poly) -> Poly {
+        self.common(other, false)
+    }
+    /// The same where this polynomial is known to be primitive, which saves looking for contents.
+    pub(crate) fn gcd_of_primitive(&self, other: &Poly) -> Poly {
+        self.common(other, true)
+    }
+    fn common(&self, other: &Poly, primitive: bool) -> Poly {
         if self.is_zero() {
             return other.primitive();
         }
@@ -270,7 +277,7 @@ impl Poly {
         if self.coeffs.len() == 1 || other.coeffs.len() == 1 {
             return Poly::constant(Int::one());
         }
-        if let Some(g) = gcd::gcd(self, other) {
+        if let Some(g) = gcd::gcd(self, other, primitive) {
             return g;
         }
         let (a, b) = if self.coeffs.len() >= other.coeffs.len() {
@@ -309,6 +316,7 @@ impl Poly {
         if g.coeffs.len() <= 1 {
             return p;
         }
+        // Over the rationals, and `div_exact` asks no more.
         p.div_exact(&g).expect("a gcd divides").primitive()
     }
     /// Resultant: lc(self)^deg(other) · Π other(root of self). Zero if either is zero.

@@ -70,7 +70,12 @@ impl Span {
     }
     /// Whether `p` has different non-zero signs at the ends.
     pub(crate) fn changes_sign(&self, p: &Poly) -> bool {
-        p.sign_at_dyadic(&self.lo, self.e) * p.sign_at_dyadic(&self.hi, self.e) < 0
+        let sign = |v: &Int| {
+            let about = v.interval_shifted(-(self.e as i64));
+            p.sign_over(about)
+                .unwrap_or_else(|| p.sign_at_dyadic(v, self.e))
+        };
+        sign(&self.lo) * sign(&self.hi) < 0
     }
 }
 

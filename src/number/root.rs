@@ -211,6 +211,8 @@ impl Root {
                 return self.poly.clone();
             }
             let at = factors.iter().position(|f| self.span.changes_sign(f));
+            // Their product has one root in the span, a simple one, and none at its ends: so one factor changes its sign
+            // there, and no other does.
             Arc::new(factors.swap_remove(at.expect("one factor has the root")))
         })
     }
@@ -220,7 +222,7 @@ impl Root {
             return true;
         }
         // A divisor of `poly` has no root at the ends and at most one, simple, between.
-        let g = self.poly.gcd(p);
+        let g = self.poly.gcd_of_primitive(p);
         g.coeffs().len() > 1 && self.span.changes_sign(&g)
     }
     /// Equality, decided without refinement.
@@ -232,7 +234,7 @@ impl Root {
             // Ends of either interval are no roots, and each holds but one.
             return common.changes_sign(&self.poly);
         }
-        let g = self.poly.gcd(&o.poly);
+        let g = self.poly.gcd_of_primitive(&o.poly);
         g.coeffs().len() > 1 && common.changes_sign(&g)
     }
     /// Exact sign of a polynomial at the root: an interval first, then a gcd for zero, then refinement.

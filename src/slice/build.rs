@@ -500,6 +500,7 @@ impl<K: Kernel> Builder<K> {
             pawl_feature,
         } = patch.contact
         else {
+            // Walls are cut from patches, whose contacts are between features.
             unreachable!("limit stops are no walls")
         };
         let body = &self.pawl.ring;

@@ -2,8 +2,10 @@
 //!
 //! The same search as in `build.rs` (break points along x, one sample in every gap), with an interval for every
 //! number. An answer is given only where each root is proven to lie inside or outside of the chart, no two of them
-//! may be equal, and every sign is proven; so it is the answer that exact numbers give. What coincides by
-//! force, touches a seam or has no two-dimensional graph is left to those (`None`).
+//! may be equal, and every sign is proven; so it is the answer that exact numbers give. Where a root may lie on a
+//! seam, or two functions may have the same roots (right angles force both), the exact patch is asked, a few
+//! products each; that costs a tenth of working the patch out. What else coincides by force, or has no two-dimensional
+//! graph, is left to exact numbers (`None`).
 
 use super::arc::{Arc, Shape, Side};
 use super::shop::Shop;
@@ -16,6 +18,9 @@ use std::rc::Rc;
 
 /// Two ends of edges, two flush edges, two tangencies, two poles, each twice, and the seams.
 const MOST: usize = 16;
+
+/// Functions whose zeros are break points, of one patch.
+const FUNCTIONS: usize = 6;
 
 type Form = [Interval; 3];
 
@@ -76,18 +81,128 @@ fn holds_zero(e: &Enclosed) -> bool {
     e.interval().contains(0.0)
 }
 
-/// Enclosures of break points, ascending, no two of which meet.
-struct Breaks {
-    at: [Interval; MOST],
-    len: usize,
+/// The functions of an orientation whose zeros are break points of a patch.
+#[derive(Clone, Copy, Debug)]
+enum Zeros {
+    /// Where the k-th end of the edge is met.
+    Meet(usize),
+    /// Where the k-th neighbouring edge is flush.
+    Wedge(usize),
+    /// f₀.
+    Curve,
+    /// The derivative of f₀.
+    Turn,
+    /// f₁.
+    Pole,
+    /// f₀'f₁ − f₀f₁', where the time is extreme.
+    Bend,
 }
 
-impl Breaks {
+/// How a quadratic behaves at an end of the chart, by exact numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum AtSeam {
+    /// It does not vanish.
+    No,
+    /// One root is there.
+    Once,
+    /// Both roots are.
+    Twice,
+}
+
+impl AtSeam {
+    /// By the coefficients, constant first.
+    fn of<R: Scalar>([c, b, a]: &[R; 3], end: i32) -> AtSeam {
+        let both = a.plus(c);
+        let value = if end > 0 { both.plus(b) } else { both.minus(b) };
+        if !value.is_zero() {
+            AtSeam::No
+        } else if a == c {
+            AtSeam::Twice // the product of the roots is c/a
+        } else {
+            AtSeam::Once
+        }
+    }
+}
+
+/// The patch in exact numbers, made when something is asked of it.
+pub(super) struct Truth<'a, R: Scalar> {
+    frame: &'a Frame<R>,
+    make: &'a dyn Fn() -> Patch<R>,
+    patch: OnceCell<Box<Patch<R>>>,
+}
+
+impl<'a, R: Scalar> Truth<'a, R> {
+    pub(super) fn new(frame: &'a Frame<R>, make: &'a dyn Fn() -> Patch<R>) -> Truth<'a, R> {
+        Truth {
+            frame,
+            make,
+            patch: OnceCell::new(),
+        }
+    }
+    /// The patch, if it was made.
+    pub(super) fn into_patch(self) -> Option<Box<Patch<R>>> {
+        self.patch.into_inner()
+    }
+    fn form(&self, which: Zeros, chart: Chart) -> [R; 3] {
+        let patch = self.patch.get_or_init(|| Box::new((self.make)()));
+        match which {
+            Zeros::Meet(k) => {
+                let (a, q) = &patch.ends[k];
+                let (v, w) = (&self.frame.v, q - &self.frame.p0);
+                Trig::new(a.cross(v), a.dot(v).negated(), w.cross(v).negated()).form(chart)
+            }
+            Zeros::Wedge(k) => patch.wedge[k].form(chart),
+            Zeros::Curve => patch.f0.form(chart),
+            Zeros::Turn => patch.f0.derivative().form(chart),
+            Zeros::Pole => patch.f1.form(chart),
+            Zeros::Bend => {
+                let (p, q) = (patch.f0.form(chart), patch.f1.form(chart));
+                let minor = |i: usize, j: usize| p[j].times(&q[i]).minus(&p[i].times(&q[j]));
+                let middle = minor(0, 2);
+                [minor(0, 1), middle.plus(&middle), minor(1, 2)]
+            }
+        }
+    }
+    fn at_seam(&self, which: Zeros, chart: Chart, end: i32) -> AtSeam {
+        let found = AtSeam::of(&self.form(which, chart), end);
+        filter::settled_exactly(found != AtSeam::No, 0);
+        found
+    }
+    /// Whether two functions are multiples of one another, so that their roots are the same.
+    fn proportional(&self, a: Zeros, b: Zeros, chart: Chart) -> bool {
+        let (a, b) = (self.form(a, chart), self.form(b, chart));
+        let minor = |i: usize, j: usize| a[i].times(&b[j]) == a[j].times(&b[i]);
+        let yes = minor(0, 1) && minor(1, 2) && minor(0, 2) && b.iter().any(|c| !c.is_zero());
+        filter::settled_exactly(yes, 0);
+        yes
+    }
+}
+
+/// Enclosures of break points, ascending, no two of which meet.
+struct Breaks<'a, R: Scalar> {
+    at: [Interval; MOST],
+    len: usize,
+    chart: Chart,
+    /// Whether the last function looked at has a root on the lower or the upper seam.
+    seams: [bool; 2],
+    /// The functions whose roots are all here.
+    known: [Option<Zeros>; FUNCTIONS],
+    truth: &'a Truth<'a, R>,
+}
+
+impl<'a, R: Scalar> Breaks<'a, R> {
     /// The seams.
-    fn new() -> Breaks {
+    fn new(chart: Chart, truth: &'a Truth<'a, R>) -> Breaks<'a, R> {
         let mut at = [Interval::point(1.0); MOST];
         at[0] = Interval::point(-1.0);
-        Breaks { at, len: 2 }
+        Breaks {
+            at,
+            len: 2,
+            chart,
+            seams: [false; 2],
+            known: [None; FUNCTIONS],
+            truth,
+        }
     }
     fn all(&self) -> &[Interval] {
         &self.at[..self.len]
@@ -115,23 +230,58 @@ impl Breaks {
     }
     /// The roots of c·cos θ + s·sin θ: where an edge is flush, or a distance extreme. What runs along the axes has
     /// them at θ = 0 or on a seam, exactly.
-    fn flush(&mut self, w: &Trig<Enclosed>, chart: Chart) -> Option<()> {
+    fn flush(&mut self, w: &Trig<Enclosed>, which: Zeros) -> Option<()> {
         if zero(&w.s) && !holds_zero(&w.c) {
             return Some(());
         }
         if zero(&w.c) && !holds_zero(&w.s) {
             return self.root(Interval::point(0.0));
         }
-        self.roots(&form(w, chart))
+        self.roots(&form(w, self.chart), which)
     }
-    /// The roots of c + bx + ax².
-    fn roots(&mut self, f: &Form) -> Option<()> {
+    /// The roots of c + bx + ax², unless they are those of a function that was looked at.
+    fn roots(&mut self, f: &Form, which: Zeros) -> Option<()> {
+        if self.find(f, which).is_none() {
+            // Nothing was taken in: the first of the roots in the chart is met already.
+            let same = |k: &Zeros| self.truth.proportional(which, *k, self.chart);
+            self.known.iter().flatten().any(same).then_some(())?;
+        }
+        let room = self.known.iter_mut().find(|k| k.is_none());
+        room.map(|k| *k = Some(which))
+    }
+    fn find(&mut self, f: &Form, which: Zeros) -> Option<()> {
         let whole = Interval { lo: -1.0, hi: 1.0 };
         if matches!(at(f, whole).sign(), Some(1 | -1)) {
             filter::settled(Stage::Double);
             return Some(());
         }
         let [c, b, a] = *f;
+        // a + c ± b are the values at the seams. This only picks whom to ask.
+        let (sum, size) = (a.lo + c.lo, a.lo.abs() + c.lo.abs());
+        let near = (sum.abs() - b.lo.abs()).abs() <= 1e-9 * size;
+        let mut hits = [false; 2];
+        for (hit, end) in hits.iter_mut().zip([-1, 1]).filter(|_| near) {
+            let value = if end > 0 { a + c + b } else { a + c - b };
+            if value.contains(0.0) {
+                match self.truth.at_seam(which, self.chart, end) {
+                    AtSeam::No => {}
+                    AtSeam::Once => *hit = true,
+                    AtSeam::Twice => return None,
+                }
+            }
+        }
+        if hits[0] || hits[1] {
+            self.seams = hits;
+            if hits == [true; 2] {
+                return Some(());
+            }
+            // The other root is c/a or −c/a: past the chart where a is small, perhaps zero.
+            let least = c.lo.abs().min(c.hi.abs());
+            if !c.contains(0.0) && a.lo.abs().max(a.hi.abs()) < least {
+                return Some(());
+            }
+            return self.root(if hits[1] { c / a } else { -(c / a) });
+        }
         let d = b.square() - twice(twice(a * c));
         let s = match d.sign()? {
             1 => d.sqrt(),
@@ -195,9 +345,10 @@ impl View {
 
 /// Adds the arcs of a patch that may be met within the phase. None where doubles cannot tell; what was
 /// added then means nothing.
-pub(super) fn look(
+pub(super) fn look<R: Scalar>(
     patch: &Patch<Enclosed>,
     near: &Frame<Enclosed>,
+    truth: &Truth<'_, R>,
     out: &mut Vec<Seen>,
 ) -> Option<()> {
     let end = near.duration.interval().hi;
@@ -205,7 +356,7 @@ pub(super) fn look(
         return Some(());
     }
     if constant(&patch.f1) && zero(&patch.f1.k) {
-        return levels(patch, end, out);
+        return levels(patch, end, truth, out);
     }
     ordinary(patch).then_some(())?;
     let v = &near.v;
@@ -240,25 +391,27 @@ pub(super) fn look(
             wedge: [form(&patch.wedge[0], chart), form(&patch.wedge[1], chart)],
             location: [pair(0), pair(1)],
         };
-        let mut breaks = Breaks::new();
-        for m in meet.iter().flatten() {
-            breaks.roots(&form(m, chart))?;
+        let mut breaks = Breaks::new(chart, truth);
+        for (k, m) in meet.iter().enumerate() {
+            if let Some(m) = m {
+                breaks.roots(&form(m, chart), Zeros::Meet(k))?;
+            }
         }
-        for w in &patch.wedge {
-            breaks.flush(w, chart)?;
+        for (k, w) in patch.wedge.iter().enumerate() {
+            breaks.flush(w, Zeros::Wedge(k))?;
         }
         let bend = bend(&view.f0, &view.f1);
         if patch.squared {
             // Where the curve turns back, or has its pole, a wedge ends by force.
             if !constant(&patch.f1) {
-                breaks.roots(&bend)?;
+                breaks.roots(&bend, Zeros::Bend)?;
             }
         } else if constant(&patch.f1) {
             // Type B: dt/dθ vanishes with the derivative of f₀, and there are no poles.
-            breaks.flush(&patch.f0.derivative(), chart)?;
+            breaks.flush(&patch.f0.derivative(), Zeros::Turn)?;
         } else {
-            breaks.roots(&bend)?;
-            breaks.flush(&patch.f1, chart)?;
+            breaks.roots(&bend, Zeros::Bend)?;
+            breaks.flush(&patch.f1, Zeros::Pole)?;
         }
         for w in breaks.all().windows(2) {
             let x = Interval::point(w[0].hi.midpoint(w[1].lo));
@@ -352,16 +505,23 @@ pub(super) fn position(f: &Function, chart: Chart, t: Interval, span: Interval) 
 }
 
 /// The arcs of a vertex that moves along an edge: each at one orientation.
-fn levels(patch: &Patch<Enclosed>, end: f64, out: &mut Vec<Seen>) -> Option<()> {
+fn levels<R: Scalar>(
+    patch: &Patch<Enclosed>,
+    end: f64,
+    truth: &Truth<'_, R>,
+    out: &mut Vec<Seen>,
+) -> Option<()> {
     let mut k = 0;
     for chart in Chart::BOTH {
         if !patch.charts[chart.index()] {
             continue;
         }
         let f = form(&patch.f0, chart);
-        let mut breaks = Breaks::new();
-        breaks.roots(&f)?;
-        'root: for &x in &breaks.all()[1..breaks.len - 1] {
+        let mut breaks = Breaks::new(chart, truth);
+        breaks.roots(&f, Zeros::Curve)?;
+        // Of a level on the seam the copy at −1 is enough.
+        let first = usize::from(!breaks.seams[0]);
+        'root: for &x in &breaks.all()[first..breaks.len - 1] {
             for w in &patch.wedge {
                 match at(&form(w, chart), x).sign()? {
                     1 => {}

@@ -8,7 +8,7 @@
 use super::arc::{Arc, ArcId, Curve, CurveId, Exact};
 use super::build::Builder;
 use super::predicates::CrossCache;
-use super::scout::{self, Function, Seen};
+use super::scout::{self, Function, Seen, Truth};
 use crate::contact::{Chart, Frame, ObstacleShape, Pair, Patch, PawlShape, pairs_within};
 use crate::kernel::{Filtered, Kernel, Position};
 use crate::number::{Interval, Scalar};
@@ -50,6 +50,8 @@ impl<K: Kernel> Slice<K> {
         let mut seen: Vec<Seen> = Vec::new();
         let near = K::ENCLOSES.then(|| frame.enclosed());
         let mut roughs: Vec<Function> = Vec::new();
+        // Exact patches that were made to tell what coincides.
+        let mut asked: Vec<(usize, Box<Patch<K::Num>>)> = Vec::new();
         pairs_within(&frame, pawl, obstacles, &mut |pair, rough| {
             let (Some(near), Some(rough)) = (&near, rough) else {
                 pairs.push((pair, [true; 2], None));
@@ -57,7 +59,15 @@ impl<K: Kernel> Slice<K> {
             };
             let from = seen.len();
             let known = pairs.len();
-            match scout::look(&rough, near, &mut seen) {
+            let make = || {
+                let patch = pair.patch(&frame, pawl, obstacles);
+                Patch {
+                    charts: rough.charts,
+                    ..patch
+                }
+            };
+            let truth = Truth::new(&frame, &make);
+            match scout::look(&rough, near, &truth, &mut seen) {
                 Some(()) if seen.len() == from => {}
                 Some(()) => pairs.push((pair, rough.charts, Some(from..seen.len()))),
                 None => {
@@ -66,6 +76,7 @@ impl<K: Kernel> Slice<K> {
                 }
             }
             if pairs.len() > known {
+                asked.extend(truth.into_patch().map(|p| (known, p)));
                 roughs.push((rough.f0, rough.f1));
             }
         });
@@ -77,7 +88,13 @@ impl<K: Kernel> Slice<K> {
                 obstacles.to_vec().into(),
             )),
             curves: Curves::new(pairs.len() + LIMITS),
-            patches: pairs.iter().map(|_| OnceCell::new()).collect(),
+            patches: {
+                let mut all: Vec<_> = pairs.iter().map(|_| OnceCell::new()).collect();
+                for (i, patch) in asked {
+                    all[i] = OnceCell::from(patch);
+                }
+                all
+            },
             made: pairs.iter().map(|_| OnceCell::new()).collect(),
             pairs: pairs.iter().map(|p| (p.0, p.1)).collect(),
         });
@@ -204,6 +221,7 @@ impl<K: Kernel> Curves<K> {
     pub(super) fn get(&self, id: CurveId) -> &Curve<K> {
         match self.all[id as usize].get() {
             Some(c) => c,
+            // `add` alone makes ids, and nothing is ever taken out.
             None => unreachable!("an id is given out with its curve"),
         }
     }
@@ -241,12 +259,15 @@ impl<K: Kernel> Shop<K> {
             ..patch
         }
     }
-    /// The arcs of a patch; the patch itself, a quarter of all that an arc needs, is not kept for them.
+    /// The arcs of a patch; the patch itself, a quarter of all that an arc needs, is not kept for them, but used
+    /// where it is there.
     fn made(&self, i: u32) -> &[Arc<K>] {
         self.made[i as usize].get_or_init(|| {
-            let patch = self.make(i);
-            let arcs = self.builder.borrow_mut().cut(&self.curves, &patch);
-            arcs.into()
+            let known = self.patches[i as usize].get();
+            let made = known.is_none().then(|| self.make(i));
+            let patch = known.map(|p| &**p).or(made.as_ref());
+            let cut = |p| self.builder.borrow_mut().cut(&self.curves, p);
+            patch.map(cut).unwrap_or_default().into()
         })
     }
     /// The arcs of a patch, worked out, but for those that lie wholly before the phase or wholly after its

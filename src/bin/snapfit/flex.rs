@@ -50,7 +50,7 @@ pub(crate) struct FlexArgs {
 /// Arguments of `snapfit generate`.
 #[derive(Args)]
 pub(crate) struct GenerateArgs {
-    /// grid, jit, jrot, ring, chain, wall, can or flock
+    /// grid, jit, jrot, ring, chain, wall, can, flock or tree
     family: String,
     /// Number of bodies
     #[arg(long, required_unless_present = "drawing")]
@@ -59,7 +59,7 @@ pub(crate) struct GenerateArgs {
     /// fixed one, . nothing
     #[arg(long, value_name = "FILE", conflicts_with = "bodies")]
     drawing: Option<PathBuf>,
-    /// What random shifts and turns come from
+    /// What random shifts, turns and branches come from
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Write to a file instead of standard output

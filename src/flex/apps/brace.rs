@@ -7,8 +7,8 @@
 //! those that doubles cannot tell apart are compared exactly, ties going to the pair that comes
 //! first in the file. So the answer is exact for the configuration that flexing reached.
 
+use crate::flex::Violation;
 use crate::flex::shape::{Placed, Shape, double};
-use crate::flex::step::Violation;
 use crate::flex::{FlexOptions, Flexed, Pose, Structure, Term, flex};
 use crate::geometry::{Box2, Location, Polygon, Vec2};
 use crate::number::{Algebraic, Rat};

@@ -289,6 +289,32 @@ impl Program {
         )
     }
 
+    /// Lengths on the axes of the model's columns and rows in this program's units.
+    pub(crate) fn scaled_rooms(&self, p: &Problem, rooms: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let scaled = rooms.iter().enumerate().map(|(v, room)| {
+            let (size, shift) = if v < p.n {
+                (p.column_scale[v].recip(), -self.exponents[v])
+            } else {
+                (p.row_scale[v - p.n].clone(), self.exponents[v])
+            };
+            let size = size.nearest_f64().unwrap_or(f64::NAN);
+            room.map(|r| ldexp(r * size, shift + self.bound_shift))
+        });
+        scaled.collect()
+    }
+
+    /// Costs of the model's columns in this program's units, and the largest of them.
+    pub(crate) fn scaled_costs(&self, p: &Problem, c: &[f64]) -> (Vec<f64>, f64) {
+        let turn = f64::from(p.cost_scale.sign());
+        let columns = c.iter().enumerate().map(|(j, v)| {
+            let size = p.column_scale[j].nearest_f64().unwrap_or(f64::NAN);
+            ldexp(turn * v * size, self.exponents[j] + self.cost_shift)
+        });
+        let out: Vec<f64> = columns.collect();
+        let size = out.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        (out, size)
+    }
+
     /// The objective in the units of the problem, from that of this program.
     pub(crate) fn unscaled_objective(&self, value: f64) -> f64 {
         let value = if self.dualised { -value } else { value };
