@@ -9,6 +9,7 @@ use snapfit::analysis::classify::{Ask, Relative, Verdict, direction, relative};
 use snapfit::analysis::document::classify_with_way;
 use snapfit::analysis::escape::{Ground, Start, with_motion};
 use snapfit::analysis::total::{Arc, total};
+use snapfit::geometry::Vec2;
 use snapfit::motion::{OutcomeKind, simulate};
 use snapfit::number::{Poly, Rat};
 use snapfit::scene::{Scene, read_scene};
@@ -183,19 +184,77 @@ fn the_cover_holds_for_single_directions() {
         for pair in whole.cover.windows(2) {
             assert_eq!(pair[0].ends()[1], pair[1].ends()[0], "{name}");
         }
-        let mut seed = 0x9E37_79B9_7F4A_7C15u64;
-        for _ in 0..count(10_000) {
-            seed ^= seed << 13;
-            seed ^= seed >> 7;
-            seed ^= seed << 17;
-            let arc = &whole.cover[(seed >> 20) as usize % whole.cover.len()];
-            let part = Rat::frac((seed & 0xFFFF) as i64, 0xFFFF);
-            let at = &arc.from + &(&(&arc.to - &arc.from) * &part);
-            let w = Arc::unit(arc.quarter, &at);
+        for (arc, w) in drawn(&whole.cover, count(10_000)) {
             let d = direction(&ground, &start, &w, &whole.distance.square(), false);
             let proven = arc.verdict.unwrap();
             let blocked = d.verdict >= proven || d.run.outcome.kind == OutcomeKind::Bifurcated;
             assert!(blocked, "{name}: {w:?} {:?} < {proven:?}", d.verdict);
+        }
+    }
+}
+
+/// Directions drawn from a cover: an arc, and a direction of it, its ends included.
+fn drawn(cover: &[Arc], n: usize) -> impl Iterator<Item = (&Arc, Vec2)> {
+    let mut seed = 0x9E37_79B9_7F4A_7C15u64;
+    (0..n).map(move |_| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        let arc = &cover[(seed >> 20) as usize % cover.len()];
+        let part = Rat::frac((seed & 0xFFFF) as i64, 0xFFFF);
+        let at = &arc.from + &(&(&arc.to - &arc.from) * &part);
+        (arc, Arc::unit(arc.quarter, &at))
+    })
+}
+
+/// An arc that is said to be open is so in every direction, ends included: each runs its length,
+/// none blocks, none is left open. With friction and without, with a root and forces; a good part of
+/// the directions that get out is proven.
+#[test]
+fn open_arcs_get_out_in_every_direction() {
+    let cases = [
+        ("examples/bayer-hook.toml", "3/5", 0.6),
+        ("examples/bayer-hook.toml", "1/10", 0.5),
+        ("examples/handbook-edge.toml", "1/5", 0.6),
+        ("examples/handbook-vertex.toml", "1/5", 0.7),
+        ("tests/data/peg.toml", "0", 0.8),
+    ];
+    for (name, mu, least) in cases {
+        let mut s = scene(name);
+        s.friction = mu.parse().ok();
+        let ground = Ground::new(&s, None);
+        let plan = simulate(&s, &Default::default()).unwrap();
+        let Some(start) = Start::after(&plan) else {
+            panic!("{name}: {:?}", plan.outcome.kind)
+        };
+        let whole = total(&ground, &start, &[]);
+        let width = |f: &dyn Fn(&Arc) -> bool| -> f64 {
+            let arcs = whole.cover.iter().filter(|a| f(a));
+            arcs.map(Arc::width).sum()
+        };
+        let none = width(&|a| a.verdict == Some(Verdict::None));
+        let open = width(&|a| a.open);
+        eprintln!("{name} {mu}: {open} of {none} rad");
+        assert!(open >= least * none, "{name} {mu}: {open} of {none} rad");
+        assert!(
+            whole
+                .cover
+                .iter()
+                .all(|a| !a.open || a.verdict == Some(Verdict::None))
+        );
+        let arcs: Vec<Arc> = whole.cover.iter().filter(|a| a.open).cloned().collect();
+        assert!(none == 0.0 || !arcs.is_empty(), "{name}");
+        if arcs.is_empty() {
+            continue;
+        }
+        for (arc, w) in drawn(&arcs, 40 + count(10_000)) {
+            let d = direction(&ground, &start, &w, &whole.distance.square(), false);
+            assert_eq!(d.verdict, Verdict::None, "{name} {mu}: {w:?} of {arc:?}");
+            assert_eq!(
+                d.run.outcome.kind,
+                OutcomeKind::Completed,
+                "{name} {mu}: {w:?}"
+            );
         }
     }
 }
@@ -234,15 +293,7 @@ fn a_way_out_is_named_and_the_rest_is_told() {
         .iter()
         .sum();
     assert!(held > 1.0 && width(Some(Verdict::None)) > 0.5 && width(None) < 0.1);
-    let mut seed = 0x1234_5678_9ABC_DEF1u64;
-    for _ in 0..count(10_000) {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        let arc = &whole.cover[(seed >> 20) as usize % whole.cover.len()];
-        let part = Rat::frac((seed & 0xFFFF) as i64, 0xFFFF);
-        let at = &arc.from + &(&(&arc.to - &arc.from) * &part);
-        let w = Arc::unit(arc.quarter, &at);
+    for (arc, w) in drawn(&whole.cover, count(10_000)) {
         let d = direction(&ground, &start, &w, &whole.distance.square(), false);
         let Some(said) = arc.verdict else { continue };
         // The gap of a flip goes to the side of which nothing is claimed.

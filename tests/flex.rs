@@ -336,3 +336,18 @@ fn the_end_of_a_run_is_explained() {
     };
     assert_eq!(flex(&s, &none).why, Why::Time);
 }
+
+/// A gain that no double holds, small or large, is no reason to fail.
+#[test]
+fn any_gain_may_be_asked_for() {
+    for gain in ["1e-9999", "1e9999"] {
+        let mut s = generate("grid", 4, 1).unwrap();
+        s.step.gain = snapfit::number::literal::parse(gain).unwrap();
+        s.step.most = 3;
+        for path in [Path::Fast, Path::Safe] {
+            s.step.path = path;
+            let flexed = flex(&s, &FlexOptions::default());
+            assert!(flexed.displacement.sign() > 0, "{gain}");
+        }
+    }
+}

@@ -466,6 +466,40 @@ fn work_is_finite_from_the_boundary_on() {
     assert!((middle(work) - sum).abs() <= 0.01 * sum, "{sum} {work:?}");
 }
 
+/// Two pawls that both begin on the ray, as one alone does: the root's loads are their sums, as
+/// narrow. Twins give twice the one, a twin of thrice the stiffness four times.
+#[test]
+fn pawls_on_the_ray_together_add_up() {
+    let alone = bayer(&Rat::frac(3, 2), &Rat::frac(1, 2), &Rat::frac(2, 3));
+    let wish = Wish {
+        root: true,
+        ..Wish::default()
+    };
+    let peak = |s: &Scene| {
+        let doc = forces(s, &wish, &Ask::default()).unwrap();
+        let peak = &doc.root.as_ref().unwrap().phases[0].peak;
+        ends(&peak.as_ref().unwrap().resistance).expect("bounded")
+    };
+    let [lo, hi] = peak(&alone);
+    assert!(lo.sign() > 0);
+    for times in [1, 3] {
+        let mut s = alone.clone();
+        let mut twin = s.pawls[0].clone();
+        twin.name = "twin".to_owned();
+        let stiffness = twin.stiffness.take().expect("a spring");
+        twin.stiffness = Some(&stiffness * &Rat::from(times));
+        s.pawls.push(twin);
+        let [low, high] = peak(&s);
+        let sum = Rat::from(1 + times);
+        assert!(
+            low <= &hi * &sum && high >= &lo * &sum,
+            "{times}: {low} {high}"
+        );
+        let narrow = &high * &Rat::frac(1, 10_000);
+        assert!(&high - &low <= narrow, "{times}: {low} {high}");
+    }
+}
+
 /// Bayer's Example I: the torque balance of a rigid arm, W = P·(sin α + μ cos α)/(cos(α ∓ θ) ∓
 /// μ sin(α ∓ θ))…, beside the handbook's factor.
 #[test]

@@ -16,8 +16,28 @@
 //! the next at the same orientation; away from rest only to the neighbouring cell, pushed by a
 //! contact; towards rest through any cells that are not blocked (a snap), to stop at a contact or
 //! at rest. At rest both ways round are followed. Every successor that cannot be excluded is kept,
-//! so if no cell is left before the pawl is out, *no* motion of the arc gets out. Nothing is
-//! claimed otherwise.
+//! so if no cell is left before the pawl is out, *no* motion of the arc gets out.
+//!
+//! The same cells can prove the opposite. A cell *yields* if every contact that is possible in it
+//! surely pushes the pawl the same way, away from rest, and surely slides. Then the free interval
+//! above a pawl in it cannot close there, nothing sticks, and no corner leaves open which way to
+//! go. If every cell that a pawl can be in yields until it is out, *every* motion of the arc gets
+//! out. Where neither is shown nothing is claimed.
+//!
+//! # Why this is no fourth kernel
+//!
+//! The design's other way is a kernel of intervals under the one sweep: the events of an arc of
+//! directions in order, and every successor followed where the order is undecided. What is shared
+//! with the sweep here is less: the clamp's rules, the C-functions with their conditions (types A
+//! and B) and the test for sticking are written once more, in intervals over cells. In exchange
+//! nothing is ever ordered or isolated. Over an arc of some width most events of a crowded scene
+//! overlap in time, the tree of successors branches at each of them, and a branch may end in a
+//! state that no direction of the arc reaches, which then blocks the proof. Cells merge what the
+//! tree would keep apart: a slab costs its cells times the contacts in reach, however many
+//! orders of events there are, and an arc that is too wide is halved, as it would be there. What is
+//! lost is sharpness at critical directions, where cells would have to be infinitely fine; these
+//! are decided one by one with the exact rule. And since the two codes share no line, the tests that hold
+//! covers against exact single directions test one by the other.
 
 use super::field::{
     Body, Directions, Field, Model, Point, Side, cross, dot, minus, negative, positive,
@@ -90,6 +110,31 @@ impl Grid {
         let series = m * (f(1.0) - m2 * (f(3.0) - m2 * (f(5.0) - m2 * f(7.0))));
         (series + series).lo.max(0.0)
     }
+    /// An upper bound of |θ|.
+    fn most_angle(self, cell: i64) -> f64 {
+        let h = self.half_turn(cell).abs();
+        let x = self.x(cell);
+        // 2·arctan m ≤ 2m, and a half-turn is less than 3.15.
+        let m = x.lo.abs().max(x.hi.abs());
+        if h > 0 {
+            (h as f64 + 0.5) * 3.15
+        } else {
+            2.0 * m
+        }
+    }
+}
+
+/// A contact that cannot be excluded in a cell.
+struct Touch {
+    /// F_θ.
+    slope: Interval,
+    /// ρ_y, and the sign that friction takes it with.
+    rise: Interval,
+    epsilon: f64,
+    /// d: which way the contact slides.
+    drag: Interval,
+    /// Length of the normal.
+    normal: Interval,
 }
 
 /// What is known of a cell.
@@ -268,8 +313,6 @@ impl<'a> View<'a> {
     }
 
     fn look(&self, cell: i64) -> Known {
-        self.field.spent.set(self.field.spent.get() + self.cost);
-        let turn = self.grid.turn(cell);
         let stop = self.stop(cell);
         let mut out = Known {
             blocked: stop == Some(false),
@@ -278,6 +321,41 @@ impl<'a> View<'a> {
         if out.blocked {
             return out;
         }
+        let side = cell.signum();
+        let angle = self.grid.least_angle(cell);
+        let mut sought = !out.holds;
+        out.blocked = self.scan(cell, &mut sought, &mut |touch| {
+            !self.holds(touch, side, angle)
+        });
+        out.holds |= !sought;
+        out
+    }
+
+    /// Whether nothing in the cell can stop a pawl that is there: every contact that is possible
+    /// pushes it one way, away from rest, and slides; see the head of the module.
+    pub(super) fn yields(&self, cell: i64) -> bool {
+        if self.stop(cell).is_some() {
+            return false;
+        }
+        let most = self.grid.most_angle(cell);
+        // At rest the first contact says which way.
+        let mut side = cell.signum();
+        let mut so_far = true;
+        let blocked = self.scan(cell, &mut so_far, &mut |touch| {
+            let way = i64::from(touch.slope.sign().unwrap_or(0));
+            if side == 0 {
+                side = way;
+            }
+            way != 0 && way == side && self.slides(touch, side, most)
+        });
+        blocked || so_far
+    }
+
+    /// Looks at every contact that cannot be excluded in the cell, as long as `go_on` holds, which
+    /// is set to what `each` says. Whether the cell is blocked.
+    fn scan(&self, cell: i64, go_on: &mut bool, each: &mut dyn FnMut(&Touch) -> bool) -> bool {
+        self.field.spent.set(self.field.spent.get() + self.cost);
+        let turn = self.grid.turn(cell);
         let base = self.body.hinge;
         let slab = self.slab;
         let w = *self.w;
@@ -300,8 +378,6 @@ impl<'a> View<'a> {
         };
         let apart =
             |a: Interval, b: Interval| positive(a) && negative(b) || negative(a) && positive(b);
-        let side = cell.signum();
-        let angle = self.grid.least_angle(cell);
         let mut known: Vec<Option<Vec<Interval>>> = vec![None; self.rows.len()];
         for (k, row) in self.rows.iter().enumerate() {
             let r = &row.ring[row.side];
@@ -312,54 +388,56 @@ impl<'a> View<'a> {
                 if (0..pawl.len()).any(crossing) {
                     let next = known[row.next].get_or_insert_with(|| edges(&self.rows[row.next]));
                     if (0..pawl.len()).any(|b| crossing(b) && apart(fa[b], next[b])) {
-                        out.blocked = true;
-                        return out;
+                        return true;
                     }
                 }
-                out.holds = out.holds
-                    || pawl.iter().zip(&fb).any(|(b, f)| {
-                        b.convex && f.contains(0.0) && self.type_b(b, r, &turn, &shift, side, angle)
-                    });
+                for (b, f) in pawl.iter().zip(&fb) {
+                    if *go_on
+                        && b.convex
+                        && f.contains(0.0)
+                        && let Some(touch) = self.type_b(b, r, &turn, &shift)
+                    {
+                        *go_on = each(&touch);
+                    }
+                }
             }
-            out.holds = out.holds
-                || r.convex
-                    && pawl.iter().zip(&fa).any(|(b, f)| {
-                        f.contains(0.0) && self.type_a(b, r, row.ring, &turn, &shift, side, angle)
-                    });
+            for (b, f) in pawl.iter().zip(&fa) {
+                if *go_on
+                    && r.convex
+                    && f.contains(0.0)
+                    && let Some(touch) = self.type_a(b, r, row.ring, &turn, &shift)
+                {
+                    *go_on = each(&touch);
+                }
+            }
         }
-        out
+        false
     }
 
-    /// Whether a pawl vertex may be held by an obstacle edge in the cell.
-    fn type_b(
-        &self,
-        b: &Side,
-        r: &Side,
-        turn: &Point,
-        shift: &Point,
-        side: i64,
-        angle: f64,
-    ) -> bool {
+    /// The contact of a pawl vertex with an obstacle edge in the cell, if there may be one.
+    fn type_b(&self, b: &Side, r: &Side, turn: &Point, shift: &Point) -> Option<Touch> {
         let pawl = &self.body.sides;
         let turned = |v: &Point, n: &Point| dot(v, n) * turn[0] + cross(v, n) * turn[1];
         let behind = minus(&pawl[b.prev].at, &b.at);
         if negative(turned(&b.along, &r.normal)) || negative(turned(&behind, &r.normal)) {
-            return false;
+            return None;
         }
         let place = turned(&b.at, &r.along) + dot(&minus(shift, &r.at), &r.along);
         if negative(place) || positive(place - r.length2) {
-            return false;
+            return None;
         }
         // R a·n and its derivative.
         let (c, s) = (dot(&b.at, &r.normal), cross(&b.at, &r.normal));
-        let rise = c * turn[0] + s * turn[1];
-        let slope = s * turn[0] - c * turn[1];
-        let drag = turned(&b.at, self.w);
-        self.holds(slope, rise, drag, 1.0, r.normal_length, side, angle)
+        Some(Touch {
+            slope: s * turn[0] - c * turn[1],
+            rise: c * turn[0] + s * turn[1],
+            drag: turned(&b.at, self.w),
+            epsilon: 1.0,
+            normal: r.normal_length,
+        })
     }
 
-    /// Whether an obstacle vertex may hold a pawl edge in the cell.
-    #[allow(clippy::too_many_arguments)]
+    /// The contact of an obstacle vertex with a pawl edge in the cell, if there may be one.
     fn type_a(
         &self,
         b: &Side,
@@ -367,66 +445,74 @@ impl<'a> View<'a> {
         ring: &[Side],
         turn: &Point,
         shift: &Point,
-        side: i64,
-        angle: f64,
-    ) -> bool {
+    ) -> Option<Touch> {
         let turned = |v: &Point, n: &Point| dot(v, n) * turn[0] + cross(v, n) * turn[1];
         let behind = minus(&ring[r.prev].at, &r.at);
         if negative(turned(&b.normal, &r.along)) || negative(turned(&b.normal, &behind)) {
-            return false;
+            return None;
         }
         let q = minus(&r.at, shift);
         let place = turned(&b.along, &q) - dot(&b.along, &b.at);
         if negative(place) || positive(place - b.length2) {
-            return false;
+            return None;
         }
         let (c, s) = (dot(&b.normal, &q), cross(&b.normal, &q));
-        let slope = s * turn[0] - c * turn[1];
-        let drag = dot(self.w, &q);
-        self.holds(slope, b.offset, drag, -1.0, b.normal_length, side, angle)
+        Some(Touch {
+            slope: s * turn[0] - c * turn[1],
+            rise: b.offset,
+            drag: dot(self.w, &q),
+            epsilon: -1.0,
+            normal: b.normal_length,
+        })
+    }
+
+    /// |F_θ| + ε·μ·sgn(d)·ρ_y of a contact that pushes to a side: where it is negative the contact
+    /// sticks, and the contact's force is inverse to it.
+    fn room(&self, touch: &Touch, side: i64) -> Interval {
+        let push = if side > 0 { touch.slope } else { -touch.slope };
+        let rub = self.body.friction * touch.rise * Interval::point(touch.epsilon);
+        let rub = match touch.drag.sign() {
+            Some(s) => rub * Interval::point(f64::from(s)),
+            None => rub.hull(&-rub),
+        };
+        push + rub
     }
 
     /// Whether a contact may hold a pawl away from rest and let it slide: F_θ pushes the right
     /// way, and |F_θ| + ε·μ·sgn(d)·ρ_y may be positive and, with forces in the model, small
     /// enough for none to reach the limit.
-    #[allow(clippy::too_many_arguments)]
-    fn holds(
-        &self,
-        slope: Interval,
-        rise: Interval,
-        drag: Interval,
-        epsilon: f64,
-        normal: Interval,
-        side: i64,
-        angle: f64,
-    ) -> bool {
-        let push = match side {
+    fn holds(&self, touch: &Touch, side: i64, angle: f64) -> bool {
+        match side {
             0 => return true,
-            1 => slope,
-            _ => -slope,
-        };
-        if negative(push) {
-            return false;
+            1 if negative(touch.slope) => return false,
+            -1 if positive(touch.slope) => return false,
+            _ => {}
         }
         if self.model == Model::Shapes {
             return true;
         }
-        let rub = self.body.friction * rise * Interval::point(epsilon);
-        let rub = match drag.sign() {
-            Some(s) => rub * Interval::point(f64::from(s)),
-            None => rub.hull(&-rub),
-        };
-        let most = (push + rub).hi;
+        let most = self.room(touch, side).hi;
         if most < 0.0 {
             return false;
         }
         if self.model == Model::Force
             && let Some((scale, limit)) = self.body.push
         {
-            let force = scale * normal * Interval::point(angle);
+            let force = scale * touch.normal * Interval::point(angle);
             return (limit * Interval::point(most.max(0.0))).hi > force.lo;
         }
         true
+    }
+
+    /// Whether a contact that pushes to a side surely slides, and surely needs less than the
+    /// limiting force, where there is one.
+    fn slides(&self, touch: &Touch, side: i64, angle: f64) -> bool {
+        let least = self.room(touch, side).lo;
+        least > 0.0
+            && self.body.push.is_none_or(|(scale, limit)| {
+                let force = scale * touch.normal * Interval::point(angle);
+                (limit * Interval::point(least)).lo > force.hi
+            })
     }
 
     /// Some(false): past an angular stop; Some(true): on one.

@@ -55,7 +55,7 @@ pub struct ClassifyDocument {
     /// not asked for. The directions of the family run the length of the phase that they reverse.
     pub escape_distance: Option<Num>,
     /// Arcs that cover the circle, each proven at least as firmly blocked as it says. An arc of
-    /// `none` gets out wherever it was tried; nothing is claimed of it.
+    /// `none` gets out wherever it was tried, and everywhere if it says `proven`.
     pub cover: Vec<ArcDocument>,
     /// Where the exact verdicts of single directions flip.
     pub flips: Vec<FlipDocument>,
@@ -113,8 +113,11 @@ pub struct ArcDocument {
     pub from: [String; 2],
     /// End, exactly.
     pub to: [String; 2],
-    /// What is proven; `undecided` where nothing is.
+    /// What is known; `undecided` where nothing is.
     pub verdict: &'static str,
+    /// Whether it is proven of every direction of the arc: that it is blocked so firmly, or that
+    /// it gets out.
+    pub proven: bool,
     /// What the proof rests on, and how the motion in the arc's middle ends.
     pub reason: String,
 }
@@ -375,6 +378,7 @@ fn written(scene: &Scene, family: &Relative, circle: Option<&Total>) -> Classify
                         from: text(&from),
                         to: text(&to),
                         verdict: a.verdict.map_or("undecided", Verdict::name),
+                        proven: a.open || a.verdict.is_some_and(|v| v != Verdict::None),
                         reason: arc_reason(scene, a),
                     }
                 })
@@ -443,6 +447,7 @@ fn critical_force(family: &Relative) -> Option<Bound> {
 fn arc_reason(scene: &Scene, a: &Arc) -> String {
     let proof = match a.verdict {
         None => "nothing is proven",
+        Some(Verdict::None) if a.open => return "every direction of it gets out".to_owned(),
         Some(Verdict::None) => return "gets out wherever it was tried".to_owned(),
         Some(Verdict::Force) => "held by friction, or by more than the force limit",
         Some(Verdict::Friction) => "held by friction where the shapes alone do not",

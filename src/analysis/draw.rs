@@ -8,6 +8,9 @@ use crate::report::words::digits;
 /// The colours of phases, in turn.
 const COLOURS: [&str; 4] = ["#1b6ca8", "#c8553d", "#3a7d44", "#7b4b94"];
 
+/// An arc that got out wherever it was tried, without a proof.
+const TRIED: &str = "none, tried";
+
 /// What a verdict is drawn in: the firmer, the darker.
 fn shade(verdict: &str) -> &'static str {
     match verdict {
@@ -15,6 +18,7 @@ fn shade(verdict: &str) -> &'static str {
         "friction" => "#457b9d",
         "force" => "#e9a03b",
         "none" => "#f3b8b0",
+        TRIED => "#fbe4e0",
         _ => "#d8dde3",
     }
 }
@@ -284,17 +288,19 @@ pub fn rose(doc: &ClassifyDocument) -> String {
         if to - from > 6.0 && doc.cover.len() > 1 {
             continue;
         }
+        let tried = arc.verdict == "none" && !arc.proven;
+        let said = if tried { TRIED } else { arc.verdict };
         let n = ((to - from) * 40.0).ceil().max(1.0) as usize;
         let along = |k: usize| from + (to - from) * k as f64 / n as f64;
         let mut ring: Vec<[f64; 2]> = (0..=n).map(|k| at(along(k), outer)).collect();
         ring.extend((0..=n).rev().map(|k| at(along(k), inner)));
         let style = format!(
             "fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"0.4\"",
-            shade(arc.verdict)
+            shade(said)
         );
         page.shape(&[ring], &style);
-        if !seen.contains(&arc.verdict) {
-            seen.push(arc.verdict);
+        if !seen.contains(&said) {
+            seen.push(said);
         }
     }
     page.circle([cx, cy], inner, "#ffffff", RULE, 1.0);
@@ -338,7 +344,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
     }
     let notes = [
         "the angle says which way the root is moved from the end of the plan",
-        "ring: whole arcs, each proven to hold so firmly; none: got out wherever it was tried",
+        "ring: whole arcs, each proven to hold so firmly, or to get out; pale: got out wherever it was tried",
         "dots: single directions, decided exactly; arrows inside: the control family; outside: a way out",
     ];
     for (k, note) in notes.into_iter().enumerate() {

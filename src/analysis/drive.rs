@@ -150,14 +150,27 @@ impl Window<'_> {
         Some(summed(&self.loads(cell, 2, b)?, b))
     }
 
-    /// The five quantities over a sliver beside an end at which a single contact is on the edge of
-    /// its cone with the spring at rest.
+    /// The five quantities over a sliver beside an end at which contacts are on the edge of their
+    /// cones with the spring at rest: a single one, or some of several.
     fn beside(&self, late: bool, place: &Fix, b: Bits) -> Option<Five> {
-        let [s] = &self.slides[..] else { return None };
-        if self.t[usize::from(late)] != s.part.t[usize::from(late)] {
-            return None;
+        let end = &self.t[usize::from(late)];
+        let ends_here = |s: &Slide<'_>| *end == s.part.t[usize::from(late)];
+        if let [s] = &self.slides[..] {
+            let load = ends_here(s).then(|| s.part.sliver(late, place, s.rig, b))?;
+            return Some(summed(&[load?], b));
         }
-        Some(summed(&[s.part.sliver(late, place, s.rig, b)?], b))
+        let each = self.slides.iter().map(|s| {
+            let near = s.part.place(place, b)?;
+            if ends_here(s)
+                && let Some(load) = s.part.sliver(late, &near, s.rig, b)
+            {
+                return Some(load);
+            }
+            let x = s.part.place(&at(end, b), b)?.join(&near);
+            s.part.load(&x, s.rig, 2, b)
+        });
+        let loads: Vec<Load> = each.collect::<Option<_>>()?;
+        Some(summed(&loads, b))
     }
 
     /// Upper bounds of the five quantities over a cell where some balance may be singular; None

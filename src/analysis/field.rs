@@ -2,7 +2,8 @@
 //!
 //! Everything a proof by [`super::cells`] looks at, in certified intervals: obstacles, root and
 //! pawls, their lengths in a unit in which doubles hold them. An arc is blocked if the root is, or
-//! if of some pawl no cell is left.
+//! if of some pawl no cell is left; it is open if the root is clear of everything and every cell of
+//! every pawl yields.
 
 use super::cells::{Grid, View};
 use super::escape::{Ground, Start};
@@ -228,26 +229,19 @@ impl Field {
         grain: &Grain,
         root: f64,
     ) -> bool {
-        let per_half_turn = (3.2 * body.reach / grain.step).clamp(15.0, 4000.0) as i64 | 1;
-        let grid = Grid { n: per_half_turn };
+        let grid = self.grid(body, grain);
         let mut live = grid.cells_of(body.start.0, body.start.1);
         let mut first = true;
         for slab in Slabs::new(grain) {
             if slab.lo >= root {
                 return true;
             }
-            if self.spent.get() > self.allowed.get()
-                || grain
-                    .deadline
-                    .is_some_and(|d| std::time::Instant::now() >= d)
-            {
+            if self.tired(grain) {
                 return false;
             }
-            let near = self.near(body, w, slab);
-            let seen = near.iter().flatten().filter(|n| **n).count();
-            if seen.saturating_mul(body.sides.len()) > PAIRS {
+            let Some(near) = self.near_enough(body, w, slab) else {
                 return false;
-            }
+            };
             let mut view = View::new(self, body, w, (model, grid, slab), &near);
             match view.advance(&live, first) {
                 Some(next) => live = next,
@@ -259,6 +253,68 @@ impl Field {
             }
         }
         false
+    }
+
+    /// Whether every motion in one of the directions runs at least to `grain.until`: the root
+    /// touches nothing, and nothing stops any pawl.
+    pub(super) fn open(&self, w: &Directions, grain: &Grain) -> bool {
+        self.root_clear(w, grain) && self.pawls.iter().all(|body| self.pawl_open(body, w, grain))
+    }
+
+    fn root_clear(&self, w: &Directions, grain: &Grain) -> bool {
+        let Some(root) = &self.root else {
+            return true;
+        };
+        let corners: usize = self.rings.iter().map(Vec::len).sum();
+        let cost = (corners * root.len()) as u64;
+        Slabs::through(grain).all(|slab| {
+            self.spent.set(self.spent.get() + cost);
+            let d = [slab * w[0], slab * w[1]];
+            !self.tired(grain) && self.rings.iter().all(|ring| apart(root, ring, &d))
+        })
+    }
+
+    fn pawl_open(&self, body: &Body, w: &Directions, grain: &Grain) -> bool {
+        let grid = self.grid(body, grain);
+        let mut live = grid.cells_of(body.start.0, body.start.1);
+        let mut first = true;
+        for slab in Slabs::through(grain) {
+            if self.tired(grain) {
+                return false;
+            }
+            let Some(near) = self.near_enough(body, w, slab) else {
+                return false;
+            };
+            // Whatever friction would do, a pawl may be where shapes let it.
+            let mut view = View::new(self, body, w, (Model::Shapes, grid, slab), &near);
+            match view.advance(&live, first) {
+                Some(next) if !next.is_empty() => live = next,
+                _ => return false,
+            }
+            first = false;
+            if !live.iter().all(|c| view.yields(*c)) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether the work or the time for a proof is spent.
+    fn tired(&self, grain: &Grain) -> bool {
+        let late = |d: std::time::Instant| std::time::Instant::now() >= d;
+        self.spent.get() > self.allowed.get() || grain.deadline.is_some_and(late)
+    }
+
+    fn grid(&self, body: &Body, grain: &Grain) -> Grid {
+        let per_half_turn = (3.2 * body.reach / grain.step).clamp(15.0, 4000.0) as i64 | 1;
+        Grid { n: per_half_turn }
+    }
+
+    /// What is near, if that is not too much for a table.
+    fn near_enough(&self, body: &Body, w: &Directions, slab: Interval) -> Option<Vec<Vec<bool>>> {
+        let near = self.near(body, w, slab);
+        let seen = near.iter().flatten().filter(|n| **n).count();
+        (seen.saturating_mul(body.sides.len()) <= PAIRS).then_some(near)
     }
 
     /// The obstacle edges (ring, index) that the pawl can reach within a slab; a vertex comes with
@@ -305,10 +361,34 @@ fn crosses(body: &[Side], ring: &[Side], shift: &Point, turn: &Point) -> bool {
     })
 }
 
+/// Whether every edge of a displaced body is apart from every edge of a ring throughout.
+fn apart(body: &[Side], ring: &[Side], shift: &Point) -> bool {
+    let span = |b: &Side, k: usize| {
+        let [from, to] = [b.at[k], body[b.next].at[k]];
+        from.hull(&to) + shift[k]
+    };
+    // A line of one with both ends of the other on one side of it.
+    let parted =
+        |a: Interval, b: Interval| positive(a) && positive(b) || negative(a) && negative(b);
+    body.iter().all(|b| {
+        ring.iter().all(|r| {
+            let boxed = |k: usize| r.at[k].hull(&ring[r.next].at[k]).meets(&span(b, k));
+            let above = |b: &Side| dot(&b.at, &r.normal) + dot(shift, &r.normal) - r.offset;
+            let beyond = |r: &Side| dot(&b.normal, &minus(&r.at, shift)) - b.offset;
+            !boxed(0)
+                || !boxed(1)
+                || parted(above(b), above(&body[b.next]))
+                || parted(beyond(r), beyond(&ring[r.next]))
+        })
+    })
+}
+
 /// Consecutive slabs of time from 0 to the grain's end.
 struct Slabs {
     t: f64,
     grain: Grain,
+    /// Whether the last one reaches past the end, rather than ending before it.
+    through: bool,
 }
 
 impl Slabs {
@@ -316,6 +396,14 @@ impl Slabs {
         Slabs {
             t: 0.0,
             grain: *grain,
+            through: false,
+        }
+    }
+
+    fn through(grain: &Grain) -> Slabs {
+        Slabs {
+            through: true,
+            ..Slabs::new(grain)
         }
     }
 }
@@ -327,6 +415,8 @@ impl Iterator for Slabs {
         let hi = lo + self.grain.step.max(lo * self.grain.spread);
         self.t = hi;
         // Neighbouring slabs share their common instant; the last one ends before the end.
-        (hi <= self.grain.until && hi > lo).then_some(Interval { lo, hi })
+        let last = if self.through { lo } else { hi };
+        let within = last <= self.grain.until && hi > lo;
+        within.then_some(Interval { lo, hi })
     }
 }

@@ -4,7 +4,8 @@
 //! wants to see is which directions hold. So neighbouring single directions are compared, the
 //! flips between them isolated, and of the pieces that are left those that block are proven as in
 //! [`super::total`], the widest first, as far as a smaller budget of work goes. A piece whose directions got out,
-//! wherever they were tried, is listed as `none`: nothing is claimed of it, so nothing needs proof.
+//! wherever they were tried, is listed as `none`; at last each is tried to be proven open, as a whole or by
+//! halves, as far as a budget of work goes, and says whether it is.
 //! Where neighbours get out by different courses more directions between them are tried, lest a
 //! narrow piece that holds be passed over.
 
@@ -19,6 +20,10 @@ const PROOF: u64 = WORK / 10;
 
 /// The narrowest piece that is halved, as a share of a quarter: 2 to minus this.
 const DEPTH: u32 = 16;
+
+/// The widest piece that is tried to be proven open, and the narrowest that is halved for it.
+const LEAST_HALVED: u32 = 3;
+const OPEN: u32 = 9;
 
 /// The share of a quarter, 2 to minus this, past which no two neighbours are left untried.
 const COARSE: u32 = 4;
@@ -98,10 +103,41 @@ impl Search<'_> {
             }
         }
         self.joined();
+        self.opened();
+        self.joined();
         self.flips.sort_by(|a, b| {
             let at = |f: &Flip| (f.sides[0].quarter, f.sides[0].s.clone());
             at(a).cmp(&at(b))
         });
+    }
+
+    /// Proves arcs of `none` open, as a whole or by halves, the widest first.
+    fn opened(&mut self) {
+        self.field.spent.set(0);
+        self.field.allowed.set(WORK);
+        let (mut left, rest): (Vec<Arc>, Vec<Arc>) = std::mem::take(&mut self.cover)
+            .into_iter()
+            .partition(|a| a.verdict == Some(Verdict::None));
+        self.cover = rest;
+        let width = |a: &Arc| &a.to - &a.from;
+        left.sort_by_key(width);
+        while let Some(mut arc) = left.pop() {
+            let wide = width(&arc);
+            arc.open = wide <= share(LEAST_HALVED) && self.prove_open(&arc);
+            let done = arc.open || wide <= share(OPEN) || self.field.spent.get() >= WORK;
+            if done || self.ground.late() {
+                self.cover.push(arc);
+                continue;
+            }
+            let mid = Rat::midpoint(&arc.from, &arc.to);
+            let (mut low, mut high) = (arc.clone(), arc);
+            low.to = mid.clone();
+            high.from = mid;
+            for half in [low, high] {
+                let at = left.partition_point(|p| width(p) <= width(&half));
+                left.insert(at, half);
+            }
+        }
     }
 
     /// Puts the arcs in order, and joins neighbours of which the same is said.
@@ -111,7 +147,8 @@ impl Search<'_> {
         for arc in arcs {
             let alike = |a: &&mut Arc| {
                 let claims = a.verdict.is_some_and(|v| v != Verdict::None);
-                let same = a.verdict == arc.verdict && a.middle == arc.middle;
+                let same = a.verdict == arc.verdict && a.open == arc.open;
+                let same = same && a.middle == arc.middle;
                 !claims && same && a.quarter == arc.quarter && a.to == arc.from
             };
             match self.cover.last_mut().filter(alike) {
@@ -136,6 +173,7 @@ impl Search<'_> {
                 from: from.clone(),
                 to: to.clone(),
                 verdict,
+                open: false,
                 middle,
             });
         }
@@ -229,6 +267,7 @@ impl Search<'_> {
             from: a.s.clone(),
             to: b.s.clone(),
             verdict: None,
+            open: false,
             middle: Some(middle),
         };
         let depth = (0..DEPTH).find(|d| width >= share(*d)).unwrap_or(DEPTH);

@@ -92,6 +92,11 @@ fn circle(doc: &ClassifyDocument, total: &str) -> String {
     if !counts.is_empty() {
         let all = counted(doc.cover.len(), "arc");
         let _ = write!(out, "; {all}: {}", counts.join(", "));
+        let out_of = doc.cover.iter().filter(|a| a.verdict == "none");
+        let open = out_of.clone().filter(|a| a.proven).count();
+        if open > 0 {
+            let _ = write!(out, " ({open} of {} proven to get out)", out_of.count());
+        }
     }
     let _ = writeln!(
         out,

@@ -5,7 +5,7 @@
 //! when; the proof for the whole arc is that of `cells`, which follows every successor in
 //! certified intervals. An arc that resists is halved, down to a bound on depth and time. One exact
 //! way out settles the class, which is then `none`; what the rest of the circle does is told all
-//! the same (`pieces`).
+//! the same, and of the arcs that get out those are proven that can be (`pieces`).
 
 use super::classify::{Direction, Verdict, direction};
 use super::escape::{Ground, Start};
@@ -27,10 +27,12 @@ pub struct Arc {
     pub from: Rat,
     /// End.
     pub to: Rat,
-    /// What is proven of every direction of the arc: blocked at least so firmly. `Verdict::None`
-    /// claims nothing: every direction of the arc that was tried gets out. None where nothing is
+    /// What is known of the arc: every direction of it is blocked at least so firmly, proven; or,
+    /// with `Verdict::None`, every direction of it that was tried gets out. None where nothing is
     /// known.
     pub verdict: Option<Verdict>,
+    /// Of an arc of `Verdict::None`: whether every direction of it is proven to get out.
+    pub open: bool,
     /// How the exact motion in its middle ends, and by which pawl.
     pub middle: Option<(OutcomeKind, Option<usize>)>,
 }
@@ -66,6 +68,7 @@ impl Arc {
             from: Rat::zero(),
             to: Rat::one(),
             verdict: None,
+            open: false,
             middle: None,
         }
     }
@@ -526,10 +529,24 @@ impl Search<'_> {
             from: from.clone(),
             to: to.clone(),
             verdict: None,
+            open: false,
             middle: None,
         };
         self.cover(half(&arc.from, &mid), depth + 1);
         self.cover(half(&mid, &arc.to), depth + 1);
+    }
+
+    /// Tries to prove that every direction of the arc gets out.
+    pub(super) fn prove_open(&self, arc: &Arc) -> bool {
+        let scale = self.field.reach();
+        let spread = arc.width() / 4.0;
+        let grain = Grain {
+            step: (self.distance.min(scale) * spread).max(scale / 256.0),
+            spread,
+            deadline: self.ground.deadline,
+            until: self.distance * (1.0 + 1e-9),
+        };
+        self.field.open(&arc.directions(), &grain)
     }
 
     /// Tries to prove the arc blocked, as firmly as its middle is or else as the class needs.

@@ -416,3 +416,58 @@ impl Kernel {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::face::kernel::CurveId;
+
+    fn curve(k: &mut Kernel, p: [i64; 3], q: [i64; 3]) -> CurveId {
+        k.curve(&p.map(Int::from), &q.map(Int::from))
+            .expect("a denominator")
+    }
+
+    /// The crossing of two curves near a place.
+    fn crossing(k: &mut Kernel, c: CurveId, d: CurveId, near: f64) -> NumId {
+        let mut found = Vec::new();
+        k.crossings(c, d, (0.0, 2.0), &[], &mut found);
+        found.retain(|&x| (k.enclosure(x).0 - near).abs() < 1e-3);
+        assert_eq!(found.len(), 1);
+        found[0]
+    }
+
+    #[test]
+    fn an_even_quartic_is_no_quadratic() {
+        let mut k = Kernel::default();
+        let c = curve(&mut k, [1, 0, 0], [1, 0, 1]);
+        let d = curve(&mut k, [2, 0, -1], [1, 0, 2]);
+        // u⁴ + u² − 1 is irreducible.
+        let x = crossing(&mut k, c, d, 0.786);
+        k.exact(x);
+        assert_eq!(k.equation(x), None);
+    }
+
+    #[test]
+    fn what_two_crossings_have_in_common_is_learnt() {
+        // Through (√2, 5/11) all of them, with denominators of their own.
+        let mut k = Kernel::default();
+        let curves = [[5, 1, 1], [7, 3, 2], [2, 4, -1], [3, 2, 7]].map(|[a, d, e]| {
+            let (p, q) = (
+                [5 * d - 22 * a, 0, 5 * d + 11 * a],
+                [11 * (d - 2 * e), 0, 11 * (d + e)],
+            );
+            curve(&mut k, p, q)
+        });
+        let [a, b, c, d] = curves;
+        let (x, y, z) = (
+            crossing(&mut k, a, b, 1.414),
+            crossing(&mut k, c, d, 1.414),
+            crossing(&mut k, a, d, 1.414),
+        );
+        assert!(k.cmp(x, y).is_eq());
+        assert_eq!(k.equation(x), Some([-2, 0, 1]));
+        let before = k.exact.len();
+        assert!(k.cmp(x, z).is_eq());
+        assert_eq!(k.exact.len(), before, "the third is known by its equation");
+    }
+}

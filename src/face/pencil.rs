@@ -41,7 +41,7 @@ pub(super) struct Pencil {
 }
 
 /// Into how many pieces each member is cut for the index.
-const PIECES: usize = 4;
+const PIECES: usize = 2;
 
 /// A curve in the plane of a chart: a cubic over a quadratic.
 struct BlownUp {

@@ -7,11 +7,16 @@
 //! which few questions need: it is made when one does. Nothing else is kept of how a number came about, so
 //! a value made by a long computation costs no more than one read from a file.
 
+mod order;
+mod quotient;
+
+use self::order::{cmp_values, separating_grid, told_apart};
+use self::quotient::{Narrowing, ends, homogenise, outer, pick};
 use super::filter::{self, Stage};
 use super::isolate::Isolated;
-use super::refine::{Cell, Refiner, Span};
-use super::root::{Root, grid, linear, scale_of, value_on_cell};
-use super::{Int, Interval, Poly, Rat};
+use super::refine::Span;
+use super::root::{Root, grid, linear};
+use super::{Interval, Poly, Rat};
 use std::cmp::Ordering;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -118,6 +123,7 @@ impl Algebraic {
         match &self.settled().0 {
             Rational(k) => Err(&k.value),
             RootOf(r) => Ok(r),
+            // `pick`, which settles them, makes rationals and roots only.
             QuotientOf(_) => unreachable!("quotients settle to rationals or roots"),
         }
     }
@@ -342,47 +348,6 @@ impl Algebraic {
             },
         }
     }
-    /// Order by rational ends of so many bits after the point that ordinary coincidences of numbers
-    /// of this size stop there: only what still looks equal is worth a resultant.
-    fn told_apart_by_bits(&self, o: &Algebraic) -> Option<Ordering> {
-        let unresolved =
-            |a: &Algebraic| matches!(&a.0, QuotientOf(q) if q.resolved.get().is_none());
-        if !filter::on() || !(unresolved(self) || unresolved(o)) {
-            return None;
-        }
-        let wider = grid(self.around(), 100);
-        let most = self.coefficient_bits().max(o.coefficient_bits());
-        let (mut u, mut v) = (self.narrowing(), o.narrowing());
-        for bits in [wider, 2 * most] {
-            if bits < wider {
-                break;
-            }
-            let ((a, b), (c, d)) = (u.at(bits), v.at(bits));
-            let order = match (b < c, d < a) {
-                (true, _) => Ordering::Less,
-                (_, true) => Ordering::Greater,
-                _ => continue,
-            };
-            if bits == wider {
-                filter::settled(Stage::Wider);
-            } else {
-                filter::settled_exactly(false, bits);
-            }
-            return Some(order);
-        }
-        None
-    }
-    /// The bits of the largest integer that the number is written with.
-    fn coefficient_bits(&self) -> u64 {
-        match &self.0 {
-            Rational(k) => k.value.bits(),
-            RootOf(r) => r.poly.most_bits(),
-            QuotientOf(q) => {
-                let parts = q.num.most_bits().max(q.den.most_bits());
-                parts.max(q.root.poly.most_bits())
-            }
-        }
-    }
     /// The root x of p(x) + self·q(x) that lies in the enclosures delivered by `locate` (rational lo ≤ x ≤ hi,
     /// shrinking to the root as bits grow).
     ///
@@ -434,282 +399,6 @@ impl Algebraic {
     }
 }
 
-impl Quotient {
-    fn resolve(&self) -> Algebraic {
-        let Quotient { root, num, den, .. } = self;
-        // Conjugates at which the denominator vanishes are none of ours.
-        let g = root.poly.gcd(den);
-        let p = match g.degree() {
-            Some(0) => None,
-            _ => root.poly.div_exact(&g).map(|p| p.primitive()),
-        };
-        let p = p.as_ref().unwrap_or(&root.poly);
-        let resultant = quotient_polynomial(p, num, den);
-        let x = root.enclosure();
-        let rough = Poly::quotient_over(num, den, x);
-        let mut bits = grid(x, 64);
-        let mut refiner = root.refine();
-        pick(&resultant, rough, || {
-            quotient_enclosure(&mut refiner, num, den, &mut bits)
-        })
-    }
-}
-
-/// A number between rational ends that close in on it.
-enum Narrowing<'a> {
-    Known(&'a Rat),
-    Root(Refiner<'a>),
-    Quotient(Refiner<'a>, &'a Quotient),
-}
-
-impl Narrowing<'_> {
-    /// Ends lo ≤ number ≤ hi, about 2^-bits apart.
-    fn at(&mut self, bits: u64) -> (Rat, Rat) {
-        match self {
-            Narrowing::Known(r) => (r.clone(), r.clone()),
-            Narrowing::Root(r) => ends(r.cell(bits), bits),
-            Narrowing::Quotient(r, q) => quotient_enclosure(r, &q.num, &q.den, &mut bits.clone()),
-        }
-    }
-}
-
-/// Rational ends around num/den, narrower with every call.
-fn quotient_enclosure(
-    refiner: &mut Refiner<'_>,
-    num: &Poly,
-    den: &Poly,
-    bits: &mut u64,
-) -> (Rat, Rat) {
-    loop {
-        let b = *bits;
-        *bits = 2 * b + 32;
-        let k = match refiner.cell(b) {
-            Cell::Exact(r) => {
-                let v = num.eval(&r) / den.eval(&r);
-                return (v.clone(), v);
-            }
-            Cell::Between(k) => k,
-        };
-        let ((n, n_err), (d, d_err)) = (value_on_cell(num, &k, b), value_on_cell(den, &k, b));
-        // num/den is the quotient of these times 2^shift.
-        let shift = scale_of(den, b) - scale_of(num, b);
-        let (n, d) = if d.sign() < 0 { (-n, -d) } else { (n, d) };
-        let (d_low, d_high) = (&d - &d_err, &d + &d_err);
-        if d_low.sign() <= 0 {
-            continue;
-        }
-        let (n_low, n_high) = (&n - &n_err, n + n_err);
-        let over = |n: &Int, d: &Int, up: bool| {
-            let e = b as i64 + shift;
-            let q = if e >= 0 {
-                n.shl(e as u64).div_rem_floor(d).0
-            } else {
-                n.div_rem_floor(&d.shl(e.unsigned_abs())).0
-            };
-            Rat::dyadic(if up { q + Int::one() } else { q }, -(b as i64))
-        };
-        let d_of = |away_from_zero: bool| if away_from_zero { &d_low } else { &d_high };
-        return (
-            over(&n_low, d_of(n_low.sign() < 0), false),
-            over(&n_high, d_of(n_high.sign() > 0), true),
-        );
-    }
-}
-
-/// R(y) = Res_x(p(x), y·den(x) − num(x)) up to a constant: its roots are num/den at the roots of p. `den` must
-/// not vanish at any of them, so that the degree is that of p. Read off at as many points as it takes.
-fn quotient_polynomial(p: &Poly, num: &Poly, den: &Poly) -> Poly {
-    let n = p.coeffs().len() - 1;
-    let formal = num.coeffs().len().max(den.coeffs().len()) - 1;
-    let lead = p.coeff(n);
-    let values = (0..=n as i64).map(|y| {
-        let q = den.scale(&Int::from(y)) - num;
-        let missing = q.degree().map_or(0, |d| formal - d);
-        p.resultant(&q) * lead.pow(missing as u32)
-    });
-    interpolate(values.collect())
-}
-
-/// n! times the polynomial that takes the given values at 0, 1, …, n (Newton's forward differences).
-fn interpolate(mut d: Vec<Int>) -> Poly {
-    let n = d.len() - 1;
-    for level in 1..=n {
-        for i in (level..=n).rev() {
-            let t = &d[i] - &d[i - 1];
-            d[i] = t;
-        }
-    }
-    // Σ d_i/i!·x(x−1)…(x−i+1), by Horner: the weights n!/i! keep it integral.
-    let mut weight = Int::one();
-    let mut c: Vec<Int> = Vec::new();
-    for i in (0..=n).rev() {
-        let x = Int::from(i as i64);
-        c.insert(0, Int::zero());
-        for j in 0..c.len() - 1 {
-            let t = &c[j + 1] * &x;
-            c[j] -= t;
-        }
-        c[0] += &d[i] * &weight;
-        weight *= x;
-    }
-    Poly::new(c)
-}
-
-/// den^n·p(num/den).
-fn homogenise(p: &Poly, num: &Poly, den: &Poly) -> Poly {
-    let Some(n) = p.degree() else {
-        return Poly::zero();
-    };
-    let mut weight = Poly::constant(Int::one());
-    let mut acc = Poly::constant(p.coeff(n));
-    for i in (0..n).rev() {
-        weight *= den;
-        acc = acc * num + weight.scale(&p.coeff(i));
-    }
-    acc
-}
-
-/// Doubles around two rationals.
-fn outer(lo: &Rat, hi: &Rat) -> Interval {
-    Interval {
-        lo: lo.interval().lo,
-        hi: hi.interval().hi,
-    }
-}
-
-/// The one root of `p` that stays in ever smaller enclosures, the first of them given in doubles.
-fn pick(p: &Poly, rough: Interval, mut enclose: impl FnMut() -> (Rat, Rat)) -> Algebraic {
-    let p = p.squarefree();
-    // Mostly the first enclosure isolates already, and no other root is ever looked at.
-    if p.degree().is_some_and(|d| d >= 3)
-        && let Some(root) = Root::adopt(&p, rough)
-    {
-        return root.into();
-    }
-    let mut roots = p.real_roots();
-    roots.retain(|r| r.interval().meets(&rough));
-    while roots.len() > 1 {
-        let (lo, hi) = enclose();
-        roots.retain(|r| r.cmp_rat(&lo).is_ge() && r.cmp_rat(&hi).is_le());
-    }
-    roots.pop().expect("no root lies in the enclosure")
-}
-
-fn ends(cell: Cell, bits: u64) -> (Rat, Rat) {
-    match cell {
-        Cell::Exact(r) => (r.clone(), r),
-        Cell::Between(k) => {
-            let e = -(bits as i64);
-            let next = Rat::dyadic(&k + Int::one(), e);
-            (Rat::dyadic(k, e), next)
-        }
-    }
-}
-
-/// The least j ≥ 0 such that two different irrational numbers lie in different cells of the grid of step 2^-j.
-fn separating_grid(a: &Algebraic, b: &Algebraic) -> u64 {
-    let (Ok(a), Ok(b)) = (a.root(), b.root()) else {
-        return 0;
-    };
-    let (mut a, mut b) = (a.refine(), b.refine());
-    let mut bits = 64;
-    loop {
-        if let (Cell::Between(x), Cell::Between(y)) = (a.cell(bits), b.cell(bits))
-            && x != y
-        {
-            // Coarser grids: drop bits as long as the cells differ (monotone, so bisect).
-            let (mut least, mut most) = (0, bits);
-            while least < most {
-                let j = least.midpoint(most);
-                if x.shr(bits - j) != y.shr(bits - j) {
-                    most = j
-                } else {
-                    least = j + 1
-                }
-            }
-            return most;
-        }
-        bits *= 2;
-    }
-}
-
-/// What enclosures alone prove: the order of numbers that they hold apart, or equality where both
-/// are one double.
-#[inline]
-fn told_apart(x: &Interval, y: &Interval) -> Option<Ordering> {
-    let order = if x.below(y) {
-        Ordering::Less
-    } else if y.below(x) {
-        Ordering::Greater
-    } else if x.lo == x.hi && *x == *y && x.is_finite() {
-        Ordering::Equal
-    } else {
-        return None;
-    };
-    filter::settled(Stage::Double);
-    Some(order)
-}
-
-/// Counts an equality of roots as settled, and keeps it where it holds: by name where both have
-/// one polynomial (and so, their intervals being isolating, no arithmetic told them equal).
-fn settled_equality(a: &Arc<Root>, b: &Arc<Root>, same: bool) {
-    if same {
-        Root::unite(a, b);
-        if a.poly == b.poly {
-            return filter::settled(Stage::Name);
-        }
-    }
-    filter::settled_exactly(same, a.poly.most_bits().max(b.poly.most_bits()));
-}
-
-/// Two rationals that their enclosures do not tell apart.
-fn cmp_values(a: &Rat, b: &Rat) -> Ordering {
-    // Fractions in lowest terms are one number if and only if they are spelt alike.
-    if a == b {
-        filter::settled(Stage::Name);
-        return Ordering::Equal;
-    }
-    filter::settled_exactly(false, a.bits().max(b.bits()));
-    a.cmp(b)
-}
-
-/// Two roots that are known to differ.
-fn cmp_different(a: &Root, b: &Root) -> Ordering {
-    let wider = grid(a.enclosure(), 100);
-    let mut bits = wider;
-    let settled = |bits| {
-        if bits == wider {
-            filter::settled(Stage::Wider);
-        } else {
-            filter::settled_exactly(false, bits);
-        }
-    };
-    let (mut x, mut y) = (a.refine(), b.refine());
-    loop {
-        // With a value met exactly one has v ≤ number ≤ v, else k < number·2^bits < k + 1.
-        let ((lo, hi), (l, h)) = match (x.cell(bits), y.cell(bits)) {
-            (Cell::Between(j), Cell::Between(k)) => {
-                if j != k {
-                    settled(bits);
-                    return j.cmp(&k);
-                }
-                bits = 2 * bits + 32;
-                continue;
-            }
-            (p, q) => (ends(p, bits), ends(q, bits)),
-        };
-        if hi <= l {
-            settled(bits);
-            return Ordering::Less;
-        }
-        if h <= lo {
-            settled(bits);
-            return Ordering::Greater;
-        }
-        bits = 2 * bits + 32;
-    }
-}
-
 impl From<Rat> for Algebraic {
     fn from(value: Rat) -> Algebraic {
         let interval = value.tight();
@@ -719,92 +408,6 @@ impl From<Rat> for Algebraic {
 impl From<Root> for Algebraic {
     fn from(r: Root) -> Algebraic {
         Algebraic(RootOf(Arc::new(r)))
-    }
-}
-impl PartialEq for Algebraic {
-    fn eq(&self, o: &Algebraic) -> bool {
-        if self.named_alike(o) {
-            return true;
-        }
-        if let Some(o) = told_apart(&self.around(), &o.around()) {
-            return o.is_eq();
-        }
-        match (&self.0, &o.0) {
-            (Rational(a), Rational(b)) => cmp_values(&a.value, &b.value).is_eq(),
-            (Rational(a), _) => o.cmp_rat(&a.value).is_eq(),
-            (_, Rational(b)) => self.cmp_rat(&b.value).is_eq(),
-            (QuotientOf(a), QuotientOf(b)) if Arc::ptr_eq(&a.root, &b.root) => {
-                a.cmp_same(b).is_eq()
-            }
-            _ if self.told_apart_by_bits(o).is_some() => false,
-            _ => match (self.root(), o.root()) {
-                (Ok(a), Ok(b)) if Arc::ptr_eq(a.representative(), b.representative()) => {
-                    filter::settled(Stage::Name);
-                    true
-                }
-                (Ok(a), Ok(b)) => {
-                    let same = a.enclosure().meets(&b.enclosure()) && a.equals(b);
-                    settled_equality(a, b, same);
-                    same
-                }
-                (Err(r), _) => o.cmp_rat(r).is_eq(),
-                (_, Err(r)) => self.cmp_rat(r).is_eq(),
-            },
-        }
-    }
-}
-impl Eq for Algebraic {}
-impl PartialOrd for Algebraic {
-    fn partial_cmp(&self, o: &Algebraic) -> Option<Ordering> {
-        Some(self.cmp(o))
-    }
-}
-impl Quotient {
-    /// Two quotients at one root: a/b − c/d has the sign of (ad − bc)·bd.
-    fn cmp_same(&self, o: &Quotient) -> Ordering {
-        let excess = &self.num * &o.den - &o.num * &self.den;
-        (self.root.sign_of(&excess) * self.den_sign * o.den_sign).cmp(&0)
-    }
-}
-impl Ord for Algebraic {
-    fn cmp(&self, o: &Algebraic) -> Ordering {
-        if self.named_alike(o) {
-            return Ordering::Equal;
-        }
-        if let Some(o) = told_apart(&self.around(), &o.around()) {
-            return o;
-        }
-        match (&self.0, &o.0) {
-            (Rational(a), Rational(b)) => return cmp_values(&a.value, &b.value),
-            (Rational(a), _) => return o.cmp_rat(&a.value).reverse(),
-            (_, Rational(b)) => return self.cmp_rat(&b.value),
-            (QuotientOf(a), QuotientOf(b)) if Arc::ptr_eq(&a.root, &b.root) => {
-                return a.cmp_same(b);
-            }
-            _ => {}
-        }
-        if let Some(o) = self.told_apart_by_bits(o) {
-            return o;
-        }
-        let (a, b) = match (self.root(), o.root()) {
-            (Ok(a), Ok(b)) => (a, b),
-            (Err(r), _) => return o.cmp_rat(r).reverse(),
-            (_, Err(r)) => return self.cmp_rat(r),
-        };
-        if Arc::ptr_eq(a.representative(), b.representative()) {
-            filter::settled(Stage::Name);
-            return Ordering::Equal;
-        }
-        // Settling a quotient may have narrowed its enclosure.
-        if let Some(o) = told_apart(&a.enclosure(), &b.enclosure()) {
-            return o;
-        }
-        if a.equals(b) {
-            settled_equality(a, b, true);
-            Ordering::Equal
-        } else {
-            cmp_different(a, b)
-        }
     }
 }
 /// The rational, or the polynomial and about where its root lies.

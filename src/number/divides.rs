@@ -203,8 +203,8 @@ mod tests {
             }
             let mut p = &d * &q;
             match round % 6 {
-                0 => p = p + Poly::constant(Int::one()),
-                1 => p = p - stream(&mut seed, 1, bits),
+                0 => p += Poly::constant(Int::one()),
+                1 => p -= stream(&mut seed, 1, bits),
                 2 => p = stream(&mut seed, 5, 300),
                 _ => {}
             }

@@ -7,6 +7,8 @@
 //! [`Long`]'s, the only file that names a big-number library; all else goes through the methods here.
 
 use super::long::Long;
+use super::ops::ops;
+use super::words::{gcd_u64, gcd_u128};
 use num_bigint::BigInt;
 use std::cmp::Ordering;
 use std::fmt;
@@ -56,52 +58,6 @@ const fn squares(m: u64) -> u128 {
         x += 1;
     }
     set
-}
-
-/// Binary gcd on machine words; gcd(0, x) = x.
-#[inline]
-pub(crate) fn gcd_u64(mut a: u64, mut b: u64) -> u64 {
-    if a == 0 || b == 0 {
-        return a | b;
-    }
-    let shift = (a | b).trailing_zeros();
-    a >>= a.trailing_zeros();
-    b >>= b.trailing_zeros();
-    while a != b {
-        // The larger is replaced by the difference, written so that it compiles without a branch.
-        let (d, borrow) = a.overflowing_sub(b);
-        b = if borrow { a } else { b };
-        a = if borrow { d.wrapping_neg() } else { d };
-        a >>= a.trailing_zeros();
-    }
-    a << shift
-}
-
-pub(super) fn gcd_u128(mut a: u128, mut b: u128) -> u128 {
-    if a == 0 || b == 0 {
-        return a | b;
-    }
-    // One division first: operands of very different size would make the subtractive loop long.
-    if a < b {
-        std::mem::swap(&mut a, &mut b);
-    }
-    if a >> 64 != 0 && b >> 64 == 0 {
-        return gcd_u64((a % b) as u64, b as u64) as u128;
-    }
-    let shift = (a | b).trailing_zeros();
-    a >>= a.trailing_zeros();
-    b >>= b.trailing_zeros();
-    while a != b {
-        if (a | b) >> 64 == 0 {
-            return (gcd_u64(a as u64, b as u64) as u128) << shift;
-        }
-        if a < b {
-            std::mem::swap(&mut a, &mut b);
-        }
-        a -= b;
-        a >>= a.trailing_zeros();
-    }
-    a << shift
 }
 
 impl Int {
@@ -564,77 +520,6 @@ impl std::str::FromStr for Int {
     }
 }
 
-/// Every form of the ring operators, by value and by reference, from the inherent methods
-/// `plus`, `minus`, `times` and `negated`.
-macro_rules! ops {
-    ($t:ty) => {
-        $crate::number::int::ops!(@two $t, Add, add, plus);
-        $crate::number::int::ops!(@two $t, Sub, sub, minus);
-        $crate::number::int::ops!(@two $t, Mul, mul, times);
-        impl Neg for &$t {
-            type Output = $t;
-            #[inline]
-            fn neg(self) -> $t {
-                self.negated()
-            }
-        }
-        impl Neg for $t {
-            type Output = $t;
-            #[inline]
-            fn neg(self) -> $t {
-                self.negated()
-            }
-        }
-        $crate::number::int::ops!(@assign $t, AddAssign, add_assign, plus);
-        $crate::number::int::ops!(@assign $t, SubAssign, sub_assign, minus);
-        $crate::number::int::ops!(@assign $t, MulAssign, mul_assign, times);
-    };
-    (@two $t:ty, $tr:ident, $f:ident, $m:ident) => {
-        impl $tr<&$t> for &$t {
-            type Output = $t;
-            #[inline]
-            fn $f(self, o: &$t) -> $t {
-                self.$m(o)
-            }
-        }
-        impl $tr<$t> for $t {
-            type Output = $t;
-            #[inline]
-            fn $f(self, o: $t) -> $t {
-                self.$m(&o)
-            }
-        }
-        impl $tr<&$t> for $t {
-            type Output = $t;
-            #[inline]
-            fn $f(self, o: &$t) -> $t {
-                self.$m(o)
-            }
-        }
-        impl $tr<$t> for &$t {
-            type Output = $t;
-            #[inline]
-            fn $f(self, o: $t) -> $t {
-                self.$m(&o)
-            }
-        }
-    };
-    (@assign $t:ty, $tr:ident, $f:ident, $m:ident) => {
-        impl $tr<&$t> for $t {
-            #[inline]
-            fn $f(&mut self, o: &$t) {
-                *self = self.$m(o);
-            }
-        }
-        impl $tr<$t> for $t {
-            #[inline]
-            fn $f(&mut self, o: $t) {
-                *self = self.$m(&o);
-            }
-        }
-    };
-}
-pub(crate) use ops;
 ops!(Int);
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 
 #[cfg(feature = "rug")]
 use super::backend::{Backend, backend};
-use super::int::gcd_u128;
+use super::words::gcd_u128;
 use num_bigint::{BigInt, BigUint, Sign};
 use num_integer::Integer as _;
 use num_traits::ToPrimitive;
@@ -253,6 +253,7 @@ impl Long {
             },
             |a: &rug::Integer| rug::Integer::from(&*a.as_abs() % m).to_u128()
         );
+        // Less than m, which is a u128.
         r.expect("a remainder is less than the divisor")
     }
     pub(super) fn gcd(&self, o: &Long) -> Long {

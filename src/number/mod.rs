@@ -15,12 +15,14 @@ mod isolate;
 pub mod literal;
 mod long;
 pub(crate) mod modular;
+mod ops;
 mod poly;
 mod quadratic;
 mod rat;
 mod refine;
 mod root;
 mod scalar;
+mod words;
 
 pub use algebraic::Algebraic;
 pub use backend::{Backend, backend, set_backend};

@@ -6,8 +6,8 @@
 
 use super::algebraic::Algebraic;
 use super::filter::{self, Stage};
-use super::int::ops;
 use super::isolate::isolate;
+use super::ops::ops;
 use super::quadratic::quadratic_roots;
 use super::{Int, Interval, Rat, factor, gcd};
 use std::fmt;
@@ -316,6 +316,7 @@ impl Poly {
         if g.coeffs.len() <= 1 {
             return p;
         }
+        // Over the rationals, and `div_exact` asks no more.
         p.div_exact(&g).expect("a gcd divides").primitive()
     }
     /// Resultant: lc(self)^deg(other) · Π other(root of self). Zero if either is zero.

@@ -74,6 +74,7 @@ fn in_doubles(a: &Int, b: &Int, c: &Int, d: &Int) -> Option<(Interval, Interval)
 fn by_square_root(p: Poly) -> Vec<Algebraic> {
     const BITS: i64 = 72;
     let [c, b, a] = p.coeffs() else {
+        // Both callers have matched on the number of coefficients.
         unreachable!("a quadratic has three coefficients");
     };
     let d = b * b - (a * c).shl(2);

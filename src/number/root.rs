@@ -211,6 +211,8 @@ impl Root {
                 return self.poly.clone();
             }
             let at = factors.iter().position(|f| self.span.changes_sign(f));
+            // Their product has one root in the span, a simple one, and none at its ends: so one factor changes its sign
+            // there, and no other does.
             Arc::new(factors.swap_remove(at.expect("one factor has the root")))
         })
     }

@@ -126,6 +126,7 @@ impl<K: Kernel> Deref for Arc<K> {
     fn deref(&self) -> &Exact<K> {
         self.exact.get_or_init(|| match &self.source {
             Some((shop, patch, k)) => shop.exact(*patch, *k, self),
+            // `Arc::made` fills it in, and `Seen::arc`, the only other maker, gives a source.
             None => unreachable!("an arc without a source is exact from the beginning"),
         })
     }

@@ -1,7 +1,7 @@
 //! From patches to arcs: break points along x, one sample in every gap.
 
 use super::arc::Exact;
-use super::names::{Lines, Name, Named, Names, Table};
+use super::names::{Lines, Name, Named, Names};
 use super::shop::Curves;
 use super::valid::{Filter, valid_graph, wedge_ok};
 use super::{Arc, Curve, CurveId, End, Shape, Side};
@@ -12,6 +12,7 @@ use crate::geometry::Vec2;
 use crate::kernel::{Instant, Kernel, Polynomial, Position};
 use crate::number::Scalar;
 use crate::number::filter::{self, Stage};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Turns patches into arcs, and knows the names of what it has met.
@@ -19,10 +20,10 @@ pub(super) struct Builder<K: Kernel> {
     pub(super) frame: Frame<K::Num>,
     pub(super) pawl: PawlShape<K::Num>,
     pub(super) obstacles: Rc<[ObstacleShape<K::Num>]>,
-    curve_ids: Table<K::Key, CurveId>,
+    curve_ids: HashMap<K::Key, CurveId>,
     /// Those of the patch at hand.
     arcs: Vec<Arc<K>>,
-    named: Table<Name<K::Num>, Names<K>>,
+    named: HashMap<Name<K::Num>, Names<K>>,
     pawl_lines: Lines<K>,
     obstacle_lines: Lines<K>,
     minus_one: K::Num,
@@ -60,9 +61,9 @@ impl<K: Kernel> Builder<K> {
             frame,
             pawl,
             obstacles,
-            curve_ids: Table::default(),
+            curve_ids: HashMap::new(),
             arcs: Vec::new(),
-            named: Table::default(),
+            named: HashMap::new(),
             pawl_lines,
             obstacle_lines,
             minus_one: K::Num::one().negated(),
@@ -499,6 +500,7 @@ impl<K: Kernel> Builder<K> {
             pawl_feature,
         } = patch.contact
         else {
+            // Walls are cut from patches, whose contacts are between features.
             unreachable!("limit stops are no walls")
         };
         let body = &self.pawl.ring;

@@ -6,70 +6,7 @@ use crate::contact::{Chart, Ring};
 use crate::geometry::Vec2;
 use crate::kernel::Kernel;
 use std::collections::HashMap;
-use std::hash::{BuildHasher, Hasher, RandomState};
 use std::rc::Rc;
-
-/// A table by names. They are long (four coordinates) and asked for often, so their hash is a multiplication a
-/// word instead of the library's; a start that differs from table to table keeps a file from aiming at it.
-pub(super) type Table<N, V> = HashMap<N, V, Start>;
-
-/// Where the hashes of a table begin.
-#[derive(Clone)]
-pub(super) struct Start(u64);
-
-impl Default for Start {
-    fn default() -> Start {
-        Start(RandomState::new().build_hasher().finish())
-    }
-}
-
-impl BuildHasher for Start {
-    type Hasher = Folded;
-    fn build_hasher(&self) -> Folded {
-        Folded(self.0)
-    }
-}
-
-/// Each word is mixed in by a product of 128 bits folded in two.
-pub(super) struct Folded(u64);
-
-impl Folded {
-    #[inline]
-    fn mix(&mut self, word: u64) {
-        const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
-        let p = u128::from(self.0 ^ word) * u128::from(FACTOR);
-        self.0 = (p as u64 ^ (p >> 64) as u64).rotate_left(23);
-    }
-}
-
-impl Hasher for Folded {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for c in bytes.chunks(8) {
-            let mut word = [0; 8];
-            word[..c.len()].copy_from_slice(c);
-            self.mix(u64::from_le_bytes(word));
-        }
-    }
-    fn write_u8(&mut self, v: u8) {
-        self.mix(v.into());
-    }
-    fn write_u32(&mut self, v: u32) {
-        self.mix(v.into());
-    }
-    fn write_u64(&mut self, v: u64) {
-        self.mix(v);
-    }
-    fn write_u128(&mut self, v: u128) {
-        self.mix(v as u64);
-        self.mix((v >> 64) as u64);
-    }
-    fn write_usize(&mut self, v: usize) {
-        self.mix(v as u64);
-    }
-}
 
 /// A point whose name is known: equal names share one handle.
 #[derive(Debug)]
@@ -98,8 +35,8 @@ pub(super) struct Lines<K: Kernel> {
     rings: Vec<Ring<K::Num>>,
     /// The first edge of each ring, numbered through all of them.
     first: Vec<u32>,
-    seen: Table<K::Key, u32>,
-    of_edge: Table<u32, u32>,
+    seen: HashMap<K::Key, u32>,
+    of_edge: HashMap<u32, u32>,
 }
 
 impl<K: Kernel> Lines<K> {
@@ -114,8 +51,8 @@ impl<K: Kernel> Lines<K> {
         Lines {
             rings,
             first,
-            seen: Table::default(),
-            of_edge: Table::default(),
+            seen: HashMap::new(),
+            of_edge: HashMap::new(),
         }
     }
 

@@ -221,6 +221,7 @@ impl<K: Kernel> Curves<K> {
     pub(super) fn get(&self, id: CurveId) -> &Curve<K> {
         match self.all[id as usize].get() {
             Some(c) => c,
+            // `add` alone makes ids, and nothing is ever taken out.
             None => unreachable!("an id is given out with its curve"),
         }
     }

@@ -137,6 +137,7 @@ impl Family {
             .replace("@3/4+GAP@", &format!("{more}/{four}"));
         match read_scene(self.name, &text) {
             Ok(file) => file.into_scene(),
+            // A template of this file with a power of two put in, whatever k is.
             Err(e) => unreachable!("the families are scenes: {e:?}"),
         }
     }

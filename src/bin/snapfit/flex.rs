@@ -53,7 +53,11 @@ pub(crate) struct GenerateArgs {
     /// grid, jit, jrot, ring, chain, wall, can, flock or tree
     family: String,
     /// Number of bodies
-    #[arg(long, required_unless_present = "drawing")]
+    #[arg(
+        long,
+        required_unless_present = "drawing",
+        allow_negative_numbers = true
+    )]
     bodies: Option<usize>,
     /// Instead of a family, the name of a structure whose blocks this file shows: # a block, @ a
     /// fixed one, . nothing

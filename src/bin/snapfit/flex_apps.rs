@@ -49,10 +49,10 @@ pub(crate) struct LoosenArgs {
     #[command(flatten)]
     format: FormatArg,
     /// Inset every body by this much, and print the structure
-    #[arg(long, value_name = "DISTANCE", value_parser = exact)]
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, value_parser = exact)]
     by: Option<Rat>,
     /// Find the largest inset whose flex is within this limit
-    #[arg(long, value_name = "FLEX", value_parser = exact)]
+    #[arg(long, value_name = "FLEX", allow_negative_numbers = true, value_parser = exact)]
     limit: Option<Rat>,
     /// With --limit: how finely insets are told apart
     #[arg(long, value_name = "DISTANCE", value_parser = exact, default_value = "1/1024")]

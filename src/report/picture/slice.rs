@@ -141,10 +141,11 @@ pub fn slice_svg(p: &SlicePicture<'_>) -> String {
     page.text(LEFT, 26.0, 17.0, INK, "start", true, &title);
     let about = match &seen.free {
         Some(f) => format!(
-            "{} contact arcs; F has {} half-edges in {} cycles",
+            "{} contact arcs; F has {} half-edges in {} cycle{}",
             seen.slice.arcs().len(),
             f.half_edges(),
-            f.cycles()
+            f.cycles(),
+            if f.cycles() == 1 { "" } else { "s" }
         ),
         None => format!(
             "{} contact arcs; the pawl has no interval to be in",
