@@ -598,3 +598,23 @@ fn bend(p: &Form, q: &Form) -> Form {
     let minor = |i: usize, j: usize| p[j] * q[i] - p[i] * q[j];
     [minor(0, 1), twice(minor(0, 2)), minor(1, 2)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rat;
+
+    #[test]
+    fn exact_roots_at_a_seam() {
+        let of = |c: [i64; 3], end| AtSeam::of(&c.map(Rat::from), end);
+        // (x − 1)(2x + 3)
+        assert_eq!(of([-3, 1, 2], 1), AtSeam::Once);
+        assert_eq!(of([-3, 1, 2], -1), AtSeam::No);
+        // (x − 1)(x + 1), and a line through −1.
+        assert_eq!([of([-1, 0, 1], 1), of([-1, 0, 1], -1)], [AtSeam::Once; 2]);
+        assert_eq!(of([4, 4, 0], -1), AtSeam::Once);
+        // −3(x + 1)²
+        assert_eq!(of([-3, -6, -3], -1), AtSeam::Twice);
+        assert_eq!(of([-3, -6, -3], 1), AtSeam::No);
+    }
+}
