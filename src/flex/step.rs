@@ -113,9 +113,11 @@ impl<'a> Run<'a> {
     pub(crate) fn new(structure: &'a Structure, options: &'a FlexOptions<'a>) -> Run<'a> {
         let scaffold = Scaffold::new(structure);
         let reach = scaffold.shapes.iter().map(|s| s.reach).fold(0.0, f64::max);
-        // A gain may be asked for that no double holds; beyond these bounds it is all the same.
         let fine = double(&structure.step.gain) * FINE / structure.bodies.len().max(1) as f64;
-        let fine = fine.clamp(1e-60, 1e60);
+        // Whatever gain is asked for, rounding stays a small part of the violation allowed, and
+        // within what doubles hold.
+        let most = double(&structure.step.violation) / 8.0;
+        let fine = fine.min(most).clamp(1e-60, 1e60);
         Run {
             structure,
             stations: Stations::new(&scaffold, reach, fine),
