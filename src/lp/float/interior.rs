@@ -14,7 +14,7 @@ use crate::lp::field::Double;
 use crate::lp::lu::factorise;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
-    DefaultInfo, DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT,
 };
 
 /// Size of the perturbations, relative.
@@ -22,10 +22,6 @@ const COST_NOISE: f64 = 1e-5;
 const BOUND_NOISE: f64 = 1e-6;
 /// Rounds in which dependent columns of the first basis are replaced.
 const REPLACEMENTS: usize = 12;
-/// From this relative gap on the method is ended where it has not come down to a tenth in so many
-/// steps: what is left is rounding, and the order of the ratios is told by then.
-const NEARLY: f64 = 1e-6;
-const STALLED: usize = 5;
 /// A pivot below this makes a column one that depends on the others.
 const DEPENDENT: f64 = 1e-7;
 
@@ -124,20 +120,12 @@ fn weights_with(
     let quadratic = CscMatrix::zeros((p.n, p.n));
     let mut solver =
         DefaultSolver::new(&quadratic, &cost, &a, &b, &cones, settings).map_err(|_| None)?;
-    let mut gaps: Vec<f64> = Vec::new();
-    solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
-        gaps.push(info.gap_rel);
-        let feasible = info.res_primal.max(info.res_dual) <= 1e-8;
-        let before = gaps.len().checked_sub(1 + STALLED).map(|k| gaps[k]);
-        feasible && info.gap_rel <= NEARLY && before.is_some_and(|g| info.gap_rel > 0.1 * g)
-    });
     solver.solve();
     let usable = matches!(
         solver.solution.status,
         SolverStatus::Solved
             | SolverStatus::AlmostSolved
             | SolverStatus::InsufficientProgress
-            | SolverStatus::CallbackTerminated
             | SolverStatus::MaxIterations
             | SolverStatus::NumericalError
     );
