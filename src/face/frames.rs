@@ -34,6 +34,9 @@ const SHARP: f64 = 1.0 / (1u64 << 32) as f64;
 /// How many bits after the point the frames of each level have.
 const LEVELS: [u32; 2] = [320, 1280];
 
+/// How many of the last frames are tried for numbers of a cluster that goes by another key.
+const LAST: usize = 8;
+
 impl Kernel {
     /// The order of two numbers by frames of a level; None where these do not tell (equal numbers, above all).
     pub(super) fn cmp_in_frames(&mut self, x: NumId, y: NumId, level: usize) -> Option<Ordering> {
@@ -59,10 +62,15 @@ impl Kernel {
         self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
     }
 
-    /// The same by a frame that is there already, of the first level if neither has one of another.
+    /// The same by a frame that is there already: the finest, which tells more than any other and costs, once each
+    /// curve was seen from it, no more.
     pub(super) fn cmp_in_old_frame(&mut self, x: NumId, y: NumId) -> Option<Ordering> {
-        let f = self.old_frame(x, y, 0)?;
-        self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f))
+        for level in (0..LEVELS.len()).rev() {
+            if let Some(f) = self.old_frame(x, y, level) {
+                return self.are_owner(x, y, f).or_else(|| self.cmp_from(x, y, f));
+            }
+        }
+        None
     }
 
     fn frame_key(&self, x: NumId, level: usize) -> (u64, usize) {
@@ -81,15 +89,17 @@ impl Kernel {
         Some(f)
     }
 
-    /// The last frame made, if that is of this level and lies about as near to two numbers as they are known.
+    /// One of the last frames made, of this level, that lies about as near to two numbers as they are known.
     fn frame_beside(&self, x: NumId, y: NumId, level: usize) -> Option<u32> {
         let (x, y) = (self.enclosure(x), self.enclosure(y));
         let (lo, hi) = (x.0.min(y.0), x.1.max(y.1));
         let room = hi - lo;
-        let last = self.frames.last()?;
-        let near =
-            last.bits == u64::from(LEVELS[level]) && last.lo <= hi + room && lo - room <= last.hi;
-        near.then(|| self.frames.len() as u32 - 1)
+        let near = |f: &Frame| {
+            f.bits == u64::from(LEVELS[level]) && f.lo <= hi + room && lo - room <= f.hi
+        };
+        let last = self.frames.len().saturating_sub(LAST);
+        let at = self.frames[last..].iter().rposition(near)?;
+        Some((last + at) as u32)
     }
 
     /// The order of two numbers that were asked about before, which mostly are in one frame.
@@ -122,10 +132,14 @@ impl Kernel {
         (self.find(x) == self.find(y)).then_some(Ordering::Equal)
     }
 
-    /// Whether a frame hardly differs from a number: its distance is not told from nought, or was not found.
+    /// Whether a frame hardly differs from a number, as far as frames of its level go: its distance is not told from
+    /// nought, is no more than another frame's would be, or was not found.
     fn is_at(&self, x: NumId, f: u32) -> bool {
         match self.local.get(&x) {
-            Some(&(g, d)) => g == f && d.sign().is_none_or(|s| s == 0),
+            Some(&(g, d)) => {
+                let grain = 2f64.powi(8 - self.frames[f as usize].bits as i32);
+                g == f && (d.sign().is_none_or(|s| s == 0) || d.v.abs() <= grain)
+            }
             None => true,
         }
     }
@@ -274,15 +288,21 @@ fn at_frame(m: &[Int], frame: &Frame) -> Int {
     linear * &frame.at + m[0].shl(2 * frame.bits)
 }
 
-/// v·2^-bits; None where that leaves the doubles.
+/// v·2^-bits; None where that is too large for doubles. What is too small is enclosed: the number for which a fine
+/// frame was made lies so near to it.
 pub(super) fn scaled(v: &Int, bits: u64) -> Option<Approx> {
     if v.is_zero() {
         return Some(Approx::exact(0.0));
     }
     let (top, below, _) = v.abs().top64();
     let exponent = i64::try_from(below).ok()? - i64::try_from(bits).ok()?;
-    if !(-900..900).contains(&exponent) {
+    if exponent >= 900 {
         return None;
+    }
+    if exponent < -900 {
+        // The top is below 2⁶⁴.
+        let e = 2f64.powi(64 - 900);
+        return Some(Approx { v: 0.0, e });
     }
     let size = top as f64 * 2f64.powi(exponent as i32);
     Some(Approx {

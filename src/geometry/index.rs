@@ -69,17 +69,20 @@ impl Hull {
         if !meet(&self.bounds, &o.bounds) {
             return true;
         }
-        let x = [
-            self.bounds[0].max(o.bounds[0]),
-            self.bounds[1].min(o.bounds[1]),
-        ];
+        // Written out, and without `min` and `max`, which see to what is not a number: most of a search is spent here,
+        // and boxes that meet hold none.
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let smaller = |a: f64, b: f64| if a < b { a } else { b };
+        let from = larger(self.bounds[0], o.bounds[0]);
+        let to = smaller(self.bounds[1], o.bounds[1]);
         // How far the one line lies above the other at both ends; what is not a number proves nothing, since the
         // room is none then either.
-        let (s, r) = (x.map(|x| self.slope * x), x.map(|x| o.slope * x));
-        let (from, to) = (s[0] - r[0], s[1] - r[1]);
-        let size = (s[0].abs() + r[0].abs()) + (s[1].abs() + r[1].abs());
-        let above = from.min(to) + (self.low - o.high);
-        let below = from.max(to) + (self.high - o.low);
+        let (s, r) = (self.slope * from, o.slope * from);
+        let (t, q) = (self.slope * to, o.slope * to);
+        let (first, last) = (s - r, t - q);
+        let size = (s.abs() + r.abs()) + (t.abs() + q.abs());
+        let above = smaller(first, last) + (self.low - o.high);
+        let below = larger(first, last) + (self.high - o.low);
         above > ERR * (size + self.low.abs() + o.high.abs())
             || -below > ERR * (size + self.high.abs() + o.low.abs())
     }
