@@ -295,67 +295,86 @@ fn membership_is_what_the_polygons_say() {
 fn intervals_are_what_the_polygons_say() {
     let (mut found, mut gaps) = (0, 0);
     each(count(20_000), 14_000_000, &mut |seed, scene, seen| {
-        let f = seen.free.as_ref().unwrap();
-        let solids = solids(scene);
-        let mut r = Rng::new(seed);
-        let t = draw(&mut r, &seen.slice).t;
-        let Some(list) = f.intervals(&seen.slice, &t) else {
-            for _ in 0..5 {
-                let c = Configuration {
-                    t: t.clone(),
-                    ..draw(&mut r, &seen.slice)
-                };
-                assert_eq!(f.locate(&c), Whereabouts::Inside, "seed {seed}");
-            }
-            return;
-        };
-        let strip = |(e, x): &(u32, snapfit::number::Algebraic)| {
-            let i = x.interval();
-            i.lo.midpoint(i.hi) + 2.0 * f.edges()[*e as usize].chart().index() as f64
-        };
-        let at = |m: f64| {
-            let m = if m > 3.0 { m - 4.0 } else { m };
-            let (chart, x) = if m <= 1.0 {
-                (Chart::Rest, m)
-            } else {
-                (Chart::Back, m - 2.0)
-            };
-            Configuration {
-                chart,
-                x: Rat::from_f64(x),
-                t: t.clone(),
-            }
-        };
-        let ends: Vec<(f64, f64)> = list
-            .iter()
-            .map(|i| {
-                let (lo, hi) = (strip(&i.low), strip(&i.high));
-                (lo, if hi < lo { hi + 4.0 } else { hi })
-            })
-            .collect();
-        for (i, &(lo, hi)) in ends.iter().enumerate() {
-            if hi - lo > 1e-9 {
-                found += 1;
-                let c = at(lo.midpoint(hi));
-                assert_eq!(f.locate(&c), Whereabouts::Inside, "seed {seed} {c:?}");
-                assert!(
-                    clear(scene, &solids, seen.pawl, &seen.slice, &c),
-                    "seed {seed} {c:?}"
-                );
-            }
-            let next = match ends.get(i + 1) {
-                Some(n) => n.0,
-                None => ends[0].0 + 4.0,
-            };
-            if next - hi > 1e-9 {
-                gaps += 1;
-                let c = at(hi.midpoint(next));
-                assert_ne!(f.locate(&c), Whereabouts::Inside, "seed {seed} {c:?}");
-            }
-        }
+        check_intervals(seed, scene, &seen, &mut found, &mut gaps);
     });
     eprintln!("{found} intervals, {gaps} gaps");
     assert!(found > 50 && gaps > 20);
+}
+
+/// An interval that ends on the cut, at a level whose arc is named in the other chart.
+#[test]
+fn a_level_on_the_cut_ends_the_last_interval() {
+    let seed = 14_088_516;
+    let (mut found, mut gaps) = (0, 0);
+    let scene = random_scene(&Recipe::draw(seed));
+    slices(&scene, &Options::default(), &mut |s: Seen| {
+        if s.free.is_some() {
+            check_intervals(seed, &scene, &s, &mut found, &mut gaps);
+        }
+    })
+    .unwrap();
+    assert!(found >= 2 && gaps >= 2);
+}
+
+fn check_intervals(seed: u64, scene: &Scene, seen: &Seen, found: &mut usize, gaps: &mut usize) {
+    let f = seen.free.as_ref().unwrap();
+    let solids = solids(scene);
+    let mut r = Rng::new(seed);
+    let t = draw(&mut r, &seen.slice).t;
+    let Some(list) = f.intervals(&seen.slice, &t) else {
+        for _ in 0..5 {
+            let c = Configuration {
+                t: t.clone(),
+                ..draw(&mut r, &seen.slice)
+            };
+            assert_eq!(f.locate(&c), Whereabouts::Inside, "seed {seed}");
+        }
+        return;
+    };
+    let strip = |(e, x): &(u32, snapfit::number::Algebraic)| {
+        let i = x.interval();
+        i.lo.midpoint(i.hi) + 2.0 * f.edges()[*e as usize].chart().index() as f64
+    };
+    let at = |m: f64| {
+        let m = if m > 3.0 { m - 4.0 } else { m };
+        let (chart, x) = if m <= 1.0 {
+            (Chart::Rest, m)
+        } else {
+            (Chart::Back, m - 2.0)
+        };
+        Configuration {
+            chart,
+            x: Rat::from_f64(x),
+            t: t.clone(),
+        }
+    };
+    let ends: Vec<(f64, f64)> = list
+        .iter()
+        .map(|i| {
+            let (lo, hi) = (strip(&i.low), strip(&i.high));
+            (lo, if hi < lo { hi + 4.0 } else { hi })
+        })
+        .collect();
+    for (i, &(lo, hi)) in ends.iter().enumerate() {
+        if hi - lo > 1e-9 {
+            *found += 1;
+            let c = at(lo.midpoint(hi));
+            assert_eq!(f.locate(&c), Whereabouts::Inside, "seed {seed} {c:?}");
+            assert!(
+                clear(scene, &solids, seen.pawl, &seen.slice, &c),
+                "seed {seed} {c:?}"
+            );
+        }
+        let next = match ends.get(i + 1) {
+            Some(n) => n.0,
+            None => ends[0].0 + 4.0,
+        };
+        if next - hi > 1e-9 {
+            *gaps += 1;
+            let c = at(hi.midpoint(next));
+            assert_ne!(f.locate(&c), Whereabouts::Inside, "seed {seed} {c:?}");
+        }
+    }
 }
 
 /// DP §9.3 (with errata 5): a t-monotone arc has at most three regions in which it sticks or slides, they follow

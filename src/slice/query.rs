@@ -107,14 +107,24 @@ impl Free {
                 alive.push((e, a));
             }
         }
+        // A level on the cut lies at one of the strip's two ends, whichever chart its arc is named in.
+        let mut k = self.kernel();
+        let ends = [-1, 3].map(|x| k.rational(&Rat::from(x)));
+        let mut end = |e: u32| {
+            let edge = &self.edges[e as usize];
+            match edge.shape {
+                Shape::Level if k.cmp(edge.ends[0], ends[0]).is_eq() => -1,
+                Shape::Level if k.cmp(edge.ends[0], ends[1]).is_eq() => 1,
+                _ => 0,
+            }
+        };
+        let mut alive: Vec<(i32, u32, ArcId)> =
+            alive.into_iter().map(|(e, a)| (end(e), e, a)).collect();
         alive.sort_by(|p, q| {
-            let (a, b) = (slice.arc(p.1), slice.arc(q.1));
-            // The two sides of a level on the cut lie at the strip's two ends.
-            let turn = |e: u32| self.edges[e as usize].bounds[0] > 2.9;
-            a.chart
-                .cmp(&b.chart)
-                .then(turn(p.0).cmp(&turn(q.0)))
-                .then_with(|| slice.cmp_heights_after(p.1, q.1, &now))
+            let (a, b) = (slice.arc(p.2), slice.arc(q.2));
+            p.0.cmp(&q.0)
+                .then(a.chart.cmp(&b.chart))
+                .then_with(|| slice.cmp_heights_after(p.2, q.2, &now))
         });
         let position = |e: u32, a: ArcId| {
             let arc = slice.arc(a);
@@ -124,7 +134,7 @@ impl Free {
             (e, crate::kernel::Position::<K>::publish(&x))
         };
         let (mut out, mut open, mut first_high) = (Vec::new(), None, None);
-        for &(e, a) in &alive {
+        for &(_, e, a) in &alive {
             let edge = &self.edges[e as usize];
             if edge.below {
                 let high = position(e, a);
