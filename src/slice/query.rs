@@ -120,6 +120,8 @@ impl Free {
         };
         let mut alive: Vec<(i32, u32, ArcId)> =
             alive.into_iter().map(|(e, a)| (end(e), e, a)).collect();
+        // Others ask it below.
+        drop(k);
         alive.sort_by(|p, q| {
             let (a, b) = (slice.arc(p.2), slice.arc(q.2));
             p.0.cmp(&q.0)
