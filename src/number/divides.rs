@@ -173,22 +173,8 @@ pub(super) fn divides(d: &Poly, p: &Poly) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::gcd::tests::stream;
     use super::*;
-
-    fn stream(seed: &mut u64, degree: usize, bits: u64) -> Poly {
-        let mut next = || {
-            let mut v = Int::zero();
-            for _ in 0..bits.div_ceil(31) {
-                *seed = seed
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
-                v = v.shl(31) + Int::from((*seed >> 33) as i64);
-            }
-            let v = v.shr(v.bits().saturating_sub(bits));
-            if *seed >> 40 & 1 == 0 { v } else { -v }
-        };
-        Poly::new((0..=degree).map(|_| next()).collect())
-    }
 
     #[test]
     fn words_tell_what_long_division_tells() {

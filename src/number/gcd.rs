@@ -329,11 +329,12 @@ pub(super) fn gcd(a: &Poly, b: &Poly, primitive: bool) -> Option<Poly> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::poly::subresultant_gcd;
     use super::*;
 
-    fn stream(seed: &mut u64, degree: usize, bits: u64) -> Poly {
+    /// A polynomial of this degree at most, its coefficients of about so many bits.
+    pub(in crate::number) fn stream(seed: &mut u64, degree: usize, bits: u64) -> Poly {
         let mut next = || {
             let mut v = Int::zero();
             for _ in 0..bits.div_ceil(31) {
