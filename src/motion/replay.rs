@@ -65,7 +65,6 @@ impl<K: Kernel> Seen<K> {
 mod tests {
     use super::*;
     use crate::motion::plan::{Options, slices};
-    use crate::number::Algebraic;
     use crate::scene::read_scene;
     use crate::slice::Free;
     use std::rc::Rc;
@@ -101,21 +100,7 @@ duration = "12"
         assert!(whole.events.len() > 2, "something happens");
         let naive = seen.run_from(file.scene(), &start, Method::Naive);
         assert_eq!(naive.faces, Default::default());
-        // By value: what is kept beside a number depends on what was asked before.
-        let value = |v: &Algebraic| (v.to_rat(), v.nearest_f64());
-        let angle = |a: &Angle| (a.half_turn, a.chart(), value(&a.x));
-        let told = |r: &Run| {
-            let events = r.events.iter().map(|e| {
-                let (at, to) = (value(e.time.exact()), e.to.as_ref().map(angle));
-                let angle = angle(&e.angle);
-                format!("{:?} {at:?} {angle:?} {to:?} {:?}", e.kind, e.contacts)
-            });
-            let segments = r.segments.iter().map(|s| {
-                let ends = (value(s.from.exact()), value(s.to.exact()));
-                format!("{ends:?} {:?} {:?}", s.winding, s.sliding)
-            });
-            events.chain(segments).collect::<Vec<_>>()
-        };
+        let told = |r: &Run| (r.events.clone(), r.segments.clone());
         let whole = seen.free.clone().unwrap();
         let mut abandoned = 0;
         for arc in 0..seen.slice.arcs().len() as u32 {
