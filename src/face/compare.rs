@@ -5,19 +5,13 @@
 //! where the curves are small, with error bounds in doubles otherwise, and exactly in any case.
 
 use super::approx::{Approx, horner};
+use super::cluster::Core;
 use super::isolate::{Roots, bernstein, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
 use crate::number::filter::{self, Stage};
 use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
-
-/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
-#[derive(Clone, Copy)]
-pub(super) struct Core {
-    pub(super) middle: f64,
-    pub(super) half: f64,
-}
 
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
@@ -269,7 +263,12 @@ impl Kernel {
 
     /// The slope of a curve over a number.
     pub(super) fn slope(&self, c: CurveId, x: NumId) -> Approx {
-        let (curve, u) = (&self.curves[c as usize], self.approx(x));
+        self.slope_over(c, self.approx(x))
+    }
+
+    /// Its slopes over all that a double and its error enclose; nothing is known where there may be a pole.
+    pub(super) fn slope_over(&self, c: CurveId, u: Approx) -> Approx {
+        let curve = &self.curves[c as usize];
         let (p, q) = (horner(&curve.p, u), horner(&curve.q, u));
         let (dp, dq) = (derivative(&curve.p, u), derivative(&curve.q, u));
         (dp * q - p * dq).over(q * q)

@@ -110,6 +110,43 @@ impl Kernel {
         }
     }
 
+    /// The frame that a number was seen from, or a new one there.
+    pub(super) fn frame_of(&mut self, x: NumId) -> u32 {
+        let x = self.find(x);
+        if let Some(&(f, _)) = self.local.get(&x) {
+            return f;
+        }
+        let f = self.new_frame(x, LEVELS[0]);
+        self.frame_near.insert(self.frame_key(x, 0), f);
+        f
+    }
+
+    /// Where a frame lies, in doubles.
+    pub(super) fn frame_range(&self, f: u32) -> (f64, f64) {
+        let frame = &self.frames[f as usize];
+        (frame.lo, frame.hi)
+    }
+
+    /// Exact order of a number and the point at a distance from a frame.
+    pub(super) fn cmp_framed(&mut self, x: NumId, f: u32, off: f64) -> Ordering {
+        let point = Approx::exact(off);
+        let x = self.find(x);
+        let order = self.distance_from(x, f).and_then(|d| apart(d, point));
+        order.unwrap_or_else(|| {
+            let frame = &self.frames[f as usize];
+            let at = Rat::new(frame.at.clone(), Int::one().shl(frame.bits)) + Rat::from_f64(off);
+            self.exact(x).cmp_rat(&at)
+        })
+    }
+
+    /// How far a curve lies above the one that others are compared with at a frame, there.
+    pub(super) fn height_in_frame(&mut self, c: CurveId, f: u32) -> Option<Approx> {
+        let from = *self.frames[f as usize].reference.get_or_insert(c);
+        let (value, q) = self.curve_beside(c, from, f)?;
+        let (_, r) = self.curve_beside(from, from, f)?;
+        Some(value.over(q * r))
+    }
+
     /// Where a number lies, roughly: a double for it, or for the frame that it was seen from and its distance.
     pub(super) fn rough(&mut self, x: NumId) -> [f64; 2] {
         let x = self.find(x);

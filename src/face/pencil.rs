@@ -8,7 +8,7 @@
 //! singular points; the quotients are exact because the common root is.)
 
 use super::approx::Approx;
-use super::compare::Core;
+use super::cluster::{Cluster, Core};
 use super::isolate::bernstein;
 use super::item::{Carrier, Item, NONE};
 use super::kernel::{CurveId, Kernel, NumId, in_parts};
@@ -36,6 +36,8 @@ pub(super) struct Pencil {
     /// The members there.
     tree: Tree,
     count: usize,
+    /// How its members pass one another within the core, if it has one.
+    pub(super) cluster: Option<Cluster>,
     /// The index of all others, if this is an outermost pencil and its members are a large part of all items.
     pub(super) rest: Option<Tree>,
 }
@@ -114,7 +116,7 @@ impl Pencil {
     /// pencil there.
     pub(super) fn crowd_in(&self, a: f64, b: f64) -> Option<usize> {
         let core = self.chart.core?;
-        let (from, to) = (core.middle - core.half, core.middle + core.half);
+        let (from, to) = core.range();
         // One rounding further out.
         (from.next_down() <= b && a <= to.next_up()).then_some(self.count)
     }
@@ -122,7 +124,7 @@ impl Pencil {
     /// The part of the axis just outside of which something may be asked again.
     pub(super) fn crowded(&self) -> Option<(f64, f64)> {
         let core = self.chart.core?;
-        let (from, to) = (core.middle - core.half, core.middle + core.half);
+        let (from, to) = core.range();
         Some((
             from.next_down().next_down().next_down(),
             to.next_up().next_up().next_up(),
@@ -230,12 +232,12 @@ impl Tracer<'_> {
     }
 
     /// Makes a pencil of items that pass near one another near `middle`, in a window too small to be halved.
-    pub(super) fn gather_cluster(&mut self, item: u32, middle: f64, window: f64, near: &[u32]) {
+    pub(super) fn gather_cluster(&mut self, item: u32, middle: NumId, window: f64, near: &[u32]) {
         let Carrier::Graph(reference) = self.items[item as usize].carrier else {
             return;
         };
         let core = Core {
-            middle,
+            middle: self.k.enclosure(middle).0,
             half: window,
         };
         let mut members: Vec<u32> = near.to_vec();
@@ -249,7 +251,9 @@ impl Tracer<'_> {
             at: Vec::new(),
             core: Some(core),
         };
-        self.add_pencil(chart, &members, NONE);
+        let id = self.add_pencil(chart, &members, NONE);
+        let cluster = Cluster::new(self.k, self.items, core, middle, members);
+        self.pencils[id as usize].cluster = Some(cluster);
     }
 
     /// Makes a pencil of members of another one, or of items that are in none.
@@ -298,6 +302,7 @@ impl Tracer<'_> {
             root,
             tree: Tree::new(entries),
             count: members.len(),
+            cluster: None,
             rest,
         });
         id

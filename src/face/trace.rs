@@ -11,14 +11,18 @@
 
 use super::approx::Approx;
 use super::bands::Bands;
+use super::cluster::Fan;
 use super::hash::FastMap;
+pub(crate) use super::hulls::hull_of;
+use super::hulls::index;
 use super::item::Place;
 pub(crate) use super::item::{Carrier, Comp, Item, NONE, Point};
 use super::kernel::{CurveId, Kernel, NumId};
 use super::meet::Cross;
 use super::pencil::Pencil;
-use super::stops::{Hit, Link, Vertex, Window};
-use crate::geometry::index::{Bounds, Hull, Tree};
+use super::stops::{Hit, Link, Vertex};
+use super::windows::{Cut, Window};
+use crate::geometry::index::Tree;
 use std::cmp::Ordering;
 
 /// The direction in which a germ leaves its vertex.
@@ -117,6 +121,8 @@ pub(crate) struct Tracer<'a> {
     /// Those that pass through one such vertex, blown up there, and to which of them an item belongs.
     pub(super) pencils: Vec<Pencil>,
     pub(super) pencil_of: Vec<u32>,
+    /// What is known of items within clusters.
+    pub(super) fans: Vec<Fan>,
     /// Pairs tested for a meeting, and how many may be before the walk is given up.
     pub(super) tests: u64,
     pub(super) budget: u64,
@@ -147,7 +153,7 @@ impl<'a> Tracer<'a> {
         let tree = index(k, items);
         let windows = items
             .iter()
-            .map(|i| Window::new(k.enclosure(i.l).0, k.enclosure(i.r).1))
+            .map(|i| Window::new(Cut::plain(k.enclosure(i.l).0), Cut::plain(k.enclosure(i.r).1)))
             .collect();
         let mut t = Tracer {
             k,
@@ -169,6 +175,7 @@ impl<'a> Tracer<'a> {
             busy: FastMap::default(),
             pencils: Vec::new(),
             pencil_of: vec![NONE; items.len()],
+            fans: Vec::new(),
             tests: 0,
             budget: u64::MAX,
             wasted: 0,
@@ -604,93 +611,3 @@ impl<'a> Tracer<'a> {
 
 /// Vertices with more germs than this have them in a map too.
 const MANY: usize = 16;
-
-/// Fills in the boxes of items, cuts them into pieces, more where they are long, about two an item in all, and
-/// packs the hulls of the pieces.
-fn index(k: &Kernel, items: &mut [Item]) -> Tree {
-    for item in items.iter_mut() {
-        if item.bounds[0] > item.bounds[1] {
-            item.bounds = box_of(k, item);
-        }
-    }
-    // Long compared with what lies between the outer tenths of all arcs.
-    let extent = |axis: usize| {
-        let mut ends: Vec<f64> = items
-            .iter()
-            .flat_map(|i| [i.bounds[axis], i.bounds[axis + 1]])
-            .filter(|x| x.is_finite())
-            .collect();
-        let n = ends.len();
-        if n < 2 {
-            return (0.0, 0.0, 1.0);
-        }
-        let (i, j) = (n / 10, n - 1 - n / 10);
-        let lo = *ends.select_nth_unstable_by(i, f64::total_cmp).1;
-        let hi = *ends.select_nth_unstable_by(j, f64::total_cmp).1;
-        (lo, hi, if hi > lo { 1.0 / (hi - lo) } else { 0.0 })
-    };
-    let (u, t) = (extent(0), extent(2));
-    let length = |b: &Bounds| {
-        let part =
-            |lo: f64, hi: f64, e: (f64, f64, f64)| (hi.min(e.1) - lo.max(e.0)).max(0.0) * e.2;
-        part(b[0], b[1], u) + part(b[2], b[3], t)
-    };
-    let total: f64 = items.iter().map(|i| length(&i.bounds)).sum();
-    let per = if total > 0.0 {
-        items.len() as f64 / total
-    } else {
-        0.0
-    };
-    let mut entries = Vec::with_capacity(items.len() * 2);
-    for (i, item) in items.iter().enumerate() {
-        let b = &item.bounds;
-        let Carrier::Graph(c) = item.carrier else {
-            entries.push((Hull::boxed(*b), i as u32));
-            continue;
-        };
-        // A range past the doubles cannot be cut into equal parts.
-        let n = if (b[1] - b[0]).is_finite() {
-            1 + ((length(b) * per) as usize).min(31)
-        } else {
-            1
-        };
-        let mut from = b[0];
-        for p in 1..=n {
-            let to = if p == n {
-                b[1]
-            } else {
-                (b[0] + (b[1] - b[0]) * (p as f64 / n as f64)).clamp(from, b[1])
-            };
-            entries.push((k.hull(c, from, to), i as u32));
-            from = to;
-        }
-    }
-    Tree::new(entries)
-}
-
-/// A hull of a whole item.
-pub(crate) fn hull_of(k: &Kernel, item: &Item) -> Hull {
-    match item.carrier {
-        Carrier::Graph(c) => k.hull(c, k.enclosure(item.l).0, k.enclosure(item.r).1),
-        Carrier::Vertical(..) => Hull::boxed(box_of(k, item)),
-    }
-}
-
-fn box_of(k: &Kernel, item: &Item) -> Bounds {
-    let (a, b) = (k.enclosure(item.l).0, k.enclosure(item.r).1);
-    match item.carrier {
-        Carrier::Graph(c) => {
-            let (lo, hi) = k.range(c, a, b);
-            [a, b, lo, hi]
-        }
-        Carrier::Vertical(lo, hi) => {
-            let (lo, hi) = (k.height(lo, item.l), k.height(hi, item.l));
-            let known = [lo, hi].iter().all(|t| t.v.is_finite() && t.e.is_finite());
-            if known {
-                [a, b, lo.lo().min(hi.lo()), lo.hi().max(hi.hi())]
-            } else {
-                [a, b, f64::NEG_INFINITY, f64::INFINITY]
-            }
-        }
-    }
-}
