@@ -197,10 +197,9 @@ impl Tracer<'_> {
             after = after.min(m.lo);
             m.after = after;
         }
-        let (frame, middle, curve) = (cluster.frame, cluster.middle, me.curve);
-        let hull = self.k.hull(curve, from, to);
+        let (frame, middle) = (cluster.frame, cluster.middle);
         let mut outside = Vec::new();
-        self.gather(item, &hull, usize::MAX, true, &mut outside);
+        self.gather(item, (from, to), usize::MAX, true, &mut outside);
         others.append(&mut outside);
         Some(Fan {
             meetings,

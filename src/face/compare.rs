@@ -354,8 +354,16 @@ impl Kernel {
         if c == d {
             return ([Approx::default(); 5], below);
         }
-        let mut top = self.full_difference(c, d);
-        let mut n = 4;
+        // With one denominator for both it is cancelled: what is left of two of degree two is a line, and its hull no
+        // more than that.
+        let (mut top, mut n) = if self.proportional(c, d) {
+            let lead = a.q.iter().rev().find(|q| q.v != 0.0);
+            below = [Approx::default(); 5];
+            below[0] = lead.copied().unwrap_or_default();
+            (self.diff(c, d), 2)
+        } else {
+            (self.full_difference(c, d), 4)
+        };
         for &(x, order) in at {
             for _ in 0..order {
                 deflate(&mut top, &mut n, self.approx(x));

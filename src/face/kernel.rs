@@ -304,7 +304,8 @@ impl Kernel {
     /// Whether the curve has no pole between two numbers, ends included.
     pub(crate) fn bounded(&mut self, c: CurveId, l: NumId, r: NumId) -> bool {
         let (a, b) = (self.nums[l as usize].lo, self.nums[r as usize].hi);
-        if self.range(c, a, b).0.is_finite() {
+        let [q0, q1, q2] = self.curves[c as usize].q;
+        if (q1 * q1 - two(two(q0 * q2))).sign() == Some(-1) || self.range(c, a, b).0.is_finite() {
             return true;
         }
         let (_, q) = self.polys(c);
@@ -498,21 +499,32 @@ fn lowest_terms(p: Poly, q: Poly) -> (Poly, Poly) {
 
 /// Divides by the common divisor, and makes the last one of them that is not zero positive.
 fn primitive<const N: usize>(c: &mut [Int; N]) {
+    // Numbers scaled by a power of two are short without it.
+    let zeros: [u64; N] = std::array::from_fn(|i| c[i].trailing_zeros().unwrap_or(0));
+    let without;
+    let (odd, two) = if zeros.iter().any(|&z| z >= 64) {
+        without = std::array::from_fn(|i| c[i].shr(zeros[i]));
+        let given = zeros.iter().zip(c.iter()).filter(|p| !p.1.is_zero());
+        (&without, given.map(|p| *p.0).min().unwrap_or(0))
+    } else {
+        (&*c, 0)
+    };
     // The shortest first: mostly two of them have no common divisor. Equal ones are one.
     let mut order: [usize; N] = std::array::from_fn(|i| i);
-    order.sort_unstable_by_key(|&i| c[i].bits());
+    order.sort_unstable_by_key(|&i| odd[i].bits());
     let mut content = Int::zero();
     let mut last = None;
     for i in order {
-        if last.is_some_and(|j: usize| c[j] == c[i]) {
+        if last.is_some_and(|j: usize| odd[j] == odd[i]) {
             continue;
         }
         last = Some(i);
-        content = content.gcd(&c[i]);
+        content = content.gcd(&odd[i]);
         if content.is_one() {
             break;
         }
     }
+    let mut content = content.shl(two);
     if content.is_zero() {
         return;
     }

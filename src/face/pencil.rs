@@ -42,7 +42,7 @@ pub(super) struct Pencil {
     pub(super) rest: Option<Tree>,
 }
 
-/// Into how many pieces each member is cut for the index.
+/// Into how many pieces each member that is no line in the chart is cut for the index.
 const PIECES: usize = 2;
 
 /// A curve in the plane of a chart: a cubic over a quadratic.
@@ -52,6 +52,12 @@ struct BlownUp {
 }
 
 impl BlownUp {
+    /// Whether it is a line.
+    fn straight(&self) -> bool {
+        let is_zero = |c: &Approx| c.sign() == Some(0);
+        self.below[1..].iter().all(is_zero) && self.top[2..].iter().all(is_zero)
+    }
+
     /// A hull over [a, b].
     fn hull(&self, a: f64, b: f64) -> Hull {
         let over = |f: &[Approx; 5], a, b| bernstein(&f[..4], a, b);
@@ -276,8 +282,9 @@ impl Tracer<'_> {
             };
             self.pencil_of[item as usize] = id;
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
-            let pieces = if (b - a).is_finite() { PIECES } else { 1 };
             let blown_up = chart.blow_up(self.k, c);
+            let cut = (b - a).is_finite() && !blown_up.straight();
+            let pieces = if cut { PIECES } else { 1 };
             let mut from = a;
             for p in 1..=pieces {
                 let to = if p == pieces {

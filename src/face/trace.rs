@@ -90,6 +90,8 @@ pub(crate) struct OnArc(pub(crate) u32);
 struct Ray {
     /// The item hit, and a curve through the point.
     below: Option<(u32, CurveId)>,
+    /// Whether the ray hits it inside, and no other item there.
+    alone: bool,
     /// An item through the ray's own begin that does not begin there itself.
     through: Option<u32>,
     /// An item that begins there.
@@ -134,6 +136,9 @@ pub(crate) struct Tracer<'a> {
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
     pub(super) edges: Vec<Edge>,
+    /// The edges below the face on each curve, of so many edges.
+    edges_on: FastMap<CurveId, Vec<u32>>,
+    edges_listed: usize,
     pub(super) cycles: Vec<Cycle>,
     /// The half-edges in the order walked: twice the edge, one more if against its direction.
     pub(super) order: Vec<u32>,
@@ -153,7 +158,12 @@ impl<'a> Tracer<'a> {
         let tree = index(k, items);
         let windows = items
             .iter()
-            .map(|i| Window::new(Cut::plain(k.enclosure(i.l).0), Cut::plain(k.enclosure(i.r).1)))
+            .map(|i| {
+                Window::new(
+                    Cut::plain(k.enclosure(i.l).0),
+                    Cut::plain(k.enclosure(i.r).1),
+                )
+            })
             .collect();
         let mut t = Tracer {
             k,
@@ -184,6 +194,8 @@ impl<'a> Tracer<'a> {
             near: Vec::new(),
             numbers: Vec::new(),
             edges: Vec::new(),
+            edges_on: FastMap::default(),
+            edges_listed: 0,
             cycles: Vec::new(),
             order: Vec::new(),
             touched: vec![false; comps.len()],
@@ -483,10 +495,34 @@ impl<'a> Tracer<'a> {
         let Some((item, _)) = ray.below else {
             return self.unbounded;
         };
-        self.touched[self.items[item as usize].comp as usize]
-            && self
-                .germ_below(item, p.x, false)
-                .is_some_and(|(_, g)| self.germs[g].open)
+        if !self.touched[self.items[item as usize].comp as usize] {
+            return false;
+        }
+        if let Carrier::Graph(c) = self.items[item as usize].carrier
+            && ray.alone
+        {
+            return self.opens_above(c, p.x);
+        }
+        self.germ_below(item, p.x, false)
+            .is_some_and(|(_, g)| self.germs[g].open)
+    }
+
+    /// Whether the face lies just above a curve over a number that is no vertex's, as far as its edges were traced.
+    fn opens_above(&mut self, c: CurveId, x: NumId) -> bool {
+        for (at, e) in self.edges.iter().enumerate().skip(self.edges_listed) {
+            if let Carrier::Graph(c) = self.items[e.item as usize].carrier
+                && e.above
+            {
+                self.edges_on.entry(c).or_default().push(at as u32);
+            }
+        }
+        self.edges_listed = self.edges.len();
+        let edges = self.edges_on.get(&c).map_or(&[][..], |e| &e[..]);
+        edges.iter().any(|&e| {
+            let Edge { low, high, .. } = self.edges[e as usize];
+            let [low, high] = [low, high].map(|v| self.vertices[v as usize].at.x);
+            self.k.cmp(low, x).is_lt() && self.k.cmp(x, high).is_lt()
+        })
     }
 
     /// What lies next below a point.
@@ -501,7 +537,7 @@ impl<'a> Tracer<'a> {
         };
         let floor = std::cell::Cell::new(f64::NEG_INFINITY);
         let mut best: Option<(u32, CurveId, Approx)> = None;
-        let (mut through, mut beside) = (None, None);
+        let (mut through, mut beside, mut alone) = (None, None, true);
         {
             tree.descend(
                 |_, n| {
@@ -525,14 +561,16 @@ impl<'a> Tracer<'a> {
                         _ => self.k.cmp_at(high, p.c, p.x),
                     };
                     if order.is_lt() {
-                        let higher = match best {
-                            None => true,
+                        let order = match best {
+                            None => Ordering::Greater,
                             Some((_, o, t)) => match (at - t).sign() {
-                                Some(s) if s != 0 => s > 0,
-                                _ => self.k.cmp_at(high, o, p.x).is_gt(),
+                                Some(s) if s != 0 => s.cmp(&0),
+                                _ => self.k.cmp_at(high, o, p.x),
                             },
                         };
-                        if higher {
+                        alone &= !order.is_eq();
+                        if order.is_gt() {
+                            alone = place == Place::Inside;
                             best = Some((i, high, at));
                             floor.set(if at.lo().is_nan() {
                                 f64::NEG_INFINITY
@@ -559,6 +597,7 @@ impl<'a> Tracer<'a> {
         self.tree = tree;
         Ray {
             below: best.map(|(i, c, _)| (i, c)),
+            alone,
             through,
             beside,
         }

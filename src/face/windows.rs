@@ -9,7 +9,6 @@
 use super::bands::Bands;
 use super::item::{Carrier, Item, NONE};
 use super::kernel::{CurveId, NumId};
-use super::pencil::Pencil;
 use super::trace::Tracer;
 use crate::geometry::index::Hull;
 use std::cmp::Ordering;
@@ -77,6 +76,13 @@ fn crowd(depth: usize) -> usize {
 
 /// Past this many halvings a window takes whatever is there.
 const DEEPEST: usize = 24;
+
+/// Nor is one halved that is such a part of the item.
+const TINIEST: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// At every so many halvings it is asked whether all that are near meet the item in one place, by how many of them.
+const LOOK: usize = 3;
+const SOME: usize = 4;
 
 /// How many items a search may find in vain, on average, before bands are made; and how many in all before that
 /// is asked.
@@ -156,45 +162,74 @@ impl Tracer<'_> {
         let (from, to) = (from.at, to.at);
         let me = self.items[item as usize];
         // What is crowded is cut out in two steps instead of ever smaller halves around it.
-        let mid = match self.pencil(item).and_then(|p| p.1.crowded()) {
+        let crowded = self.pencil(item).map(|p| p.1.crowded());
+        let mid = match crowded.flatten() {
             Some((a, _)) if from < a && a < to => a,
             Some((_, b)) if from < b && b < to => b,
             Some((a, b)) if a <= from && to <= b => to,
             _ => from + (to - from) * 0.5,
         };
-        let (hull, most) = match me.carrier {
-            Carrier::Graph(c) => (
-                self.k.hull(c, from, to),
-                if from < mid && mid < to && self.parts(&me, mid) {
-                    crowd(depth)
-                } else {
-                    usize::MAX
-                },
-            ),
-            Carrier::Vertical(..) => (Hull::boxed(me.bounds), usize::MAX),
+        let halved = matches!(me.carrier, Carrier::Graph(_))
+            && from < mid
+            && mid < to
+            && self.parts(&me, mid);
+        let whole = self.windows[item as usize];
+        let deep = depth >= DEEPEST || to - from <= (whole.to.at - whole.from.at) * TINIEST;
+        let most = match halved {
+            true if !deep => crowd(depth),
+            _ => usize::MAX,
         };
         let mut near = std::mem::take(&mut self.near);
-        if self.gather(item, &hull, most, false, &mut near) {
+        if self.gather(item, (from, to), most, false, &mut near) {
             self.stop(item, w, &near);
             // As many different points in so small a window: not one point that many pass through.
             let Window {
                 stops, stop_count, ..
             } = self.windows[w as usize];
-            if depth >= DEEPEST
-                && stop_count as usize > crowd(DEEPEST - 1)
-                && self.pencil(item).is_none()
-            {
+            if deep && stop_count as usize > crowd(DEEPEST - 1) && self.pencil(item).is_none() {
                 let middle = self.stops[(stops + stop_count / 2) as usize];
                 let middle = self.vertices[middle as usize].at.x;
                 self.gather_cluster(item, middle, to - from, &near);
             }
         } else {
+            let mid = match crowded {
+                None if depth % LOOK == 0 && depth > 0 => {
+                    self.beside_crowd(item, (from, to), &near).unwrap_or(mid)
+                }
+                _ => mid,
+            };
             let kids = self.windows.len() as u32;
-            self.windows.push(Window::new(Cut::plain(from), Cut::plain(mid)));
-            self.windows.push(Window::new(Cut::plain(mid), Cut::plain(to)));
+            self.windows
+                .push(Window::new(Cut::plain(from), Cut::plain(mid)));
+            self.windows
+                .push(Window::new(Cut::plain(mid), Cut::plain(to)));
             self.windows[w as usize].kids = kids;
         }
         self.near = near;
+    }
+
+    /// Where to cut a window beside a place where some of those that are near, and so perhaps many of them, meet an item
+    /// all at once; None if they do not, or the cut is of no use.
+    fn beside_crowd(&mut self, item: u32, (from, to): (f64, f64), near: &[u32]) -> Option<f64> {
+        let me = self.items[item as usize];
+        let whole = self.windows[item as usize];
+        let half = (whole.to.at - whole.from.at) * (TINIEST / 4.0);
+        let (mut lo, mut hi, mut met) = (f64::INFINITY, f64::NEG_INFINITY, 0);
+        for i in 0..SOME {
+            let (s, e) = self.meet(item, near[i * (near.len() - 1) / (SOME - 1)]);
+            for cross in s..e {
+                let x = self.k.enclosure(self.crosses[cross as usize].x);
+                if from <= x.0 && x.1 < to {
+                    (lo, hi, met) = (lo.min(x.0), hi.max(x.1), met + 1);
+                }
+            }
+        }
+        if met < SOME || hi - lo > half {
+            return None;
+        }
+        let cuts = [lo - half, hi + half];
+        cuts.into_iter()
+            .find(|&x| from < x && x < to && self.parts(&me, x))
     }
 
     /// Whether a cut surely lies between the ends of an item, l < mid ≤ r. The ends belong to its outermost
@@ -213,18 +248,17 @@ impl Tracer<'_> {
         }
     }
 
-    /// The items that may meet this one inside a hull; false as soon as there are more than `most`. Only those that
+    /// The items that may meet this one over a range; false as soon as there are more than `most`. Only those that
     /// are not in the item's outermost pencil, if it is so asked.
     pub(super) fn gather(
         &mut self,
         item: u32,
-        hull: &Hull,
+        range: (f64, f64),
         most: usize,
         others: bool,
         near: &mut Vec<u32>,
     ) -> bool {
         near.clear();
-        let range = (hull.bounds[0], hull.bounds[1]);
         let mut pencil = self.pencil(item);
         let outermost = match pencil {
             Some((_, p)) if others => p.root,
@@ -263,8 +297,8 @@ impl Tracer<'_> {
             if let (Carrier::Graph(c), Carrier::Graph(d)) = (me.carrier, other.carrier)
                 && c != d
             {
-                let lo = hull.bounds[0].max(k.enclosure(other.l).0);
-                let hi = hull.bounds[1].min(k.enclosure(other.r).1);
+                let lo = range.0.max(k.enclosure(other.l).0);
+                let hi = range.1.min(k.enclosure(other.r).1);
                 let vain = lo > hi
                     || match self.pencils.get(self.common_pencil(item, b) as usize) {
                         Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
@@ -290,15 +324,20 @@ impl Tracer<'_> {
             (inner, p) = (p, pencil.parent);
         }
         let outer = self.pencils.get(outermost as usize);
-        if let Some(Pencil {
-            rest: Some(rest), ..
-        }) = outer
-        {
-            rest.query(hull, &mut consider);
+        let rest = outer.and_then(|p| p.rest.as_ref());
+        let hull = || match me.carrier {
+            Carrier::Graph(c) => k.hull(c, range.0, range.1),
+            Carrier::Vertical(..) => Hull::boxed(me.bounds),
+        };
+        if let Some(rest) = rest {
+            if rest.entries() > 0 {
+                rest.query(&hull(), &mut consider);
+            }
         } else {
+            let hull = hull();
             let (bands, entries) = (&self.bands, self.tree.entries());
             let wanted = |at: usize, node: &Hull| {
-                !node.apart(hull)
+                !node.apart(&hull)
                     && match me.carrier {
                         Carrier::Graph(c) if at >= entries && !bands.is_empty() => {
                             let from = node.bounds[0].max(hull.bounds[0]);
