@@ -87,7 +87,7 @@ impl Kernel {
     /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
     /// quadratic; else it is P₁Q₂ − P₂Q₁.
     #[inline]
-    fn proportional(&self, c: CurveId, d: CurveId) -> bool {
+    pub(super) fn proportional(&self, c: CurveId, d: CurveId) -> bool {
         self.curves[c as usize].den == self.curves[d as usize].den
     }
 

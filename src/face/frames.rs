@@ -261,15 +261,45 @@ impl Kernel {
 
     /// h of two curves at a frame, in long integers.
     fn difference_at(&mut self, c: CurveId, d: CurveId, f: u32) -> Option<Approx> {
-        for curve in [c, d] {
-            self.curve_at_frame(curve, f);
-        }
-        let (p, q) = &self.framed[&(c, f)];
-        let (r, s) = &self.framed[&(d, f)];
-        let value = p * s - r * q;
         let bits = self.frames[f as usize].bits;
         let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
-        scaled(&value, 4 * bits + scale)
+        for curve in [c, d] {
+            self.top_at_frame(curve, f);
+        }
+        if self.proportional(c, d)
+            && let Some(below) = self.rough_below(c, f)
+        {
+            // h is its part of low degree times the common denominator, which doubles tell well enough.
+            let (p, r) = (&self.framed[&(c, f)], &self.framed[&(d, f)]);
+            let value = p * self.lead(d) - r * self.lead(c);
+            let lead = scaled(&self.lead(c), self.curves[c as usize].scale)?;
+            return Some(scaled(&value, 2 * bits + scale)? * below.over(lead));
+        }
+        let (q, s) = (self.below_at_frame(c, f), self.below_at_frame(d, f));
+        let (p, r) = (&self.framed[&(c, f)], &self.framed[&(d, f)]);
+        scaled(&(p * s - r * q), 4 * bits + scale)
+    }
+
+    /// The last coefficient of a denominator.
+    fn lead(&self, c: CurveId) -> Int {
+        match &self.curves[c as usize].exact {
+            Coeffs::Small(c) => c[3..]
+                .iter()
+                .rev()
+                .find(|x| **x != 0)
+                .copied()
+                .map(Int::from),
+            Coeffs::Big(c) => c[3..].iter().rev().find(|x| !x.is_zero()).cloned(),
+        }
+        .expect("a curve has a denominator")
+    }
+
+    /// A denominator at a frame, in doubles, where these know it sharply.
+    fn rough_below(&self, c: CurveId, f: u32) -> Option<Approx> {
+        let frame = &self.frames[f as usize];
+        let q = &self.curves[c as usize].q;
+        let value = horner(q, Approx::between(frame.lo, frame.hi));
+        (value.e <= value.v.abs() * SHARP).then_some(value)
     }
 
     /// The same in doubles, from what lies between each of the two and a third one: long products only once a
@@ -291,31 +321,36 @@ impl Kernel {
         if let Some(&known) = self.beside.get(&(c, f)) {
             return known;
         }
-        let bits = self.frames[f as usize].bits;
         let value = self.difference_at(c, from, f);
-        let denominator = scaled(
-            &self.framed[&(c, f)].1,
-            2 * bits + self.curves[c as usize].scale,
-        );
+        let denominator = self.rough_below(c, f).or_else(|| {
+            let bits = 2 * self.frames[f as usize].bits + self.curves[c as usize].scale;
+            scaled(&self.below_at_frame(c, f), bits)
+        });
         let known = value.zip(denominator);
         self.beside.insert((c, f), known);
         known
     }
 
-    /// P and Q at a frame, times 2^(2·bits).
-    fn curve_at_frame(&mut self, c: CurveId, f: u32) {
+    /// P at a frame, times 2^(2·bits), is in `framed` then.
+    fn top_at_frame(&mut self, c: CurveId, f: u32) {
         if self.framed.contains_key(&(c, f)) {
             return;
         }
-        let frame = &self.frames[f as usize];
-        let value = match &self.curves[c as usize].exact {
-            Coeffs::Small(c) => {
-                let c = c.map(Int::from);
-                (at_frame(&c[..3], frame), at_frame(&c[3..], frame))
-            }
-            Coeffs::Big(c) => (at_frame(&c[..3], frame), at_frame(&c[3..], frame)),
-        };
+        let value = self.part_at_frame(c, f, 0);
         self.framed.insert((c, f), value);
+    }
+
+    /// Q at a frame, times 2^(2·bits).
+    fn below_at_frame(&self, c: CurveId, f: u32) -> Int {
+        self.part_at_frame(c, f, 3)
+    }
+
+    fn part_at_frame(&self, c: CurveId, f: u32, from: usize) -> Int {
+        let frame = &self.frames[f as usize];
+        match &self.curves[c as usize].exact {
+            Coeffs::Small(c) => at_frame(&c.map(Int::from)[from..from + 3], frame),
+            Coeffs::Big(c) => at_frame(&c[from..from + 3], frame),
+        }
     }
 }
 

@@ -8,10 +8,11 @@
 
 use super::approx::{Approx, horner};
 use super::frames::{Frame, scaled};
-use super::hash::FastMap;
+use super::hash::{FastMap, WordHasher};
 use super::places::Places;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
+use std::hash::{BuildHasher, BuildHasherDefault};
 
 /// A curve t = P(u)/Q(u); equal ids are equal functions.
 pub(crate) type CurveId = u32;
@@ -83,7 +84,8 @@ pub(super) struct Num {
 pub(crate) struct Kernel {
     pub(super) curves: Vec<Curve>,
     curve_ids: FastMap<[i64; 6], CurveId>,
-    big_curve_ids: FastMap<[Int; 6], CurveId>,
+    /// By a hash of the coefficients, or the next free key after it.
+    big_curve_ids: FastMap<u64, CurveId>,
     dens: FastMap<[i64; 3], u32>,
     big_dens: FastMap<[Int; 3], u32>,
     pub(super) nums: Vec<Num>,
@@ -99,7 +101,7 @@ pub(crate) struct Kernel {
     pub(super) frames: Vec<Frame>,
     pub(super) frame_near: FastMap<(u64, usize), u32>,
     pub(super) local: FastMap<NumId, (u32, Approx)>,
-    pub(super) framed: FastMap<(CurveId, u32), (Int, Int)>,
+    pub(super) framed: FastMap<(CurveId, u32), Int>,
     pub(super) beside: FastMap<(CurveId, u32), Option<(Approx, Approx)>>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
@@ -140,8 +142,12 @@ impl Kernel {
         if let Some(c) = machine(&key) {
             return Ok(self.small_curve(c));
         }
-        if let Some(&id) = self.big_curve_ids.get(&key) {
-            return Ok(id);
+        let mut hash = BuildHasherDefault::<WordHasher>::default().hash_one(&key);
+        while let Some(&id) = self.big_curve_ids.get(&hash) {
+            if matches!(&self.curves[id as usize].exact, Coeffs::Big(c) if **c == key) {
+                return Ok(id);
+            }
+            hash = hash.wrapping_add(1);
         }
         // Long ones are scaled, so that products of two stay within the doubles.
         let bits = key.iter().map(Int::bits).max().unwrap_or(0);
@@ -166,12 +172,12 @@ impl Kernel {
         self.curves.push(Curve {
             p: [a[0], a[1], a[2]],
             q: [a[3], a[4], a[5]],
-            exact: Coeffs::Big(Box::new(key.clone())),
+            exact: Coeffs::Big(Box::new(key)),
             den,
             tiny: false,
             scale,
         });
-        self.big_curve_ids.insert(key, id);
+        self.big_curve_ids.insert(hash, id);
         Ok(id)
     }
 

@@ -36,6 +36,8 @@ pub(super) struct Pencil {
     /// The members there.
     tree: Tree,
     count: usize,
+    /// Whether all of them are lines in the chart, so that what hulls do not tell apart meets.
+    pub(super) straight: bool,
     /// How its members pass one another within the core, if it has one.
     pub(super) cluster: Option<Cluster>,
     /// The index of all others, if this is an outermost pencil and its members are a large part of all items.
@@ -275,6 +277,7 @@ impl Tracer<'_> {
             .get(parent as usize)
             .map_or(id, |parent| parent.root);
         let mut entries = Vec::with_capacity(PIECES * members.len());
+        let mut straight = true;
         for &item in members {
             let Item { carrier, l, r, .. } = self.items[item as usize];
             let Carrier::Graph(c) = carrier else {
@@ -283,6 +286,7 @@ impl Tracer<'_> {
             self.pencil_of[item as usize] = id;
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
             let blown_up = chart.blow_up(self.k, c);
+            straight &= blown_up.straight();
             let cut = (b - a).is_finite() && !blown_up.straight();
             let pieces = if cut { PIECES } else { 1 };
             let mut from = a;
@@ -309,6 +313,7 @@ impl Tracer<'_> {
             root,
             tree: Tree::new(entries),
             count: members.len(),
+            straight,
             cluster: None,
             rest,
         });

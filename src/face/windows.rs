@@ -301,6 +301,7 @@ impl Tracer<'_> {
                 let hi = range.1.min(k.enclosure(other.r).1);
                 let vain = lo > hi
                     || match self.pencils.get(self.common_pencil(item, b) as usize) {
+                        Some(shared) if shared.straight => false,
                         Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
                         None => {
                             k.miss(c, d, lo, hi)
