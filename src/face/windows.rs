@@ -80,6 +80,9 @@ const DEEPEST: usize = 24;
 /// Nor is one halved that is such a part of the item.
 const TINIEST: f64 = 1.0 / (1u64 << 20) as f64;
 
+/// So many different points in so small a window are a cluster.
+const CLUSTER: usize = 24;
+
 /// At every so many halvings it is asked whether all that are near meet the item in one place, by how many of them.
 const LOOK: usize = 3;
 const SOME: usize = 4;
@@ -186,7 +189,7 @@ impl Tracer<'_> {
             let Window {
                 stops, stop_count, ..
             } = self.windows[w as usize];
-            if deep && stop_count as usize > crowd(DEEPEST - 1) && self.pencil(item).is_none() {
+            if deep && stop_count as usize > CLUSTER && self.pencil(item).is_none() {
                 let middle = self.stops[(stops + stop_count / 2) as usize];
                 let middle = self.vertices[middle as usize].at.x;
                 self.gather_cluster(item, middle, to - from, &near);
