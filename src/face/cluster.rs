@@ -76,7 +76,7 @@ pub(super) struct Fan {
 }
 
 /// A window within a cluster that has no more meetings than this is not halved.
-const ENOUGH: usize = 8;
+const ENOUGH: usize = 6;
 
 impl Cluster {
     /// The cluster of items that pass near one another in a core, one crossing in which is given.

@@ -393,3 +393,54 @@ fn apart(a: Approx, b: Approx) -> Option<Ordering> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// t = 1 + s·(u − 1/2) + k/2^(bits + 1).
+    fn line(kernel: &mut Kernel, bits: u64, s: i64, k: i64) -> CurveId {
+        let scale = Int::one().shl(bits);
+        let p = [
+            Int::from(2 - s) * &scale + Int::from(k),
+            Int::from(2 * s) * &scale,
+            Int::zero(),
+        ];
+        let q = [Int::from(2) * &scale, Int::zero(), Int::zero()];
+        kernel.curve(&p, &q).expect("a denominator")
+    }
+
+    /// A cluster that only the finest frame tells apart: once there is one, nothing is seen from a coarser one first.
+    #[test]
+    fn the_finest_frame_is_asked_first() {
+        let mut kernel = Kernel::default();
+        let k = &mut kernel;
+        let lines: Vec<(i64, i64, CurveId)> = (0..12)
+            .map(|i| {
+                let (s, h) = (3 * i - 17, i * i % 7);
+                (s, h, line(k, 700, s, h))
+            })
+            .collect();
+        // Each with the one before it: at −Δh/Δs, in units of 2⁻⁷⁰¹.
+        let mut known: Vec<(Rat, NumId)> = Vec::new();
+        for (i, pair) in lines.windows(2).enumerate() {
+            let ((s, h, c), (r, g, d)) = (pair[0], pair[1]);
+            let mut found = Vec::new();
+            k.crossings(c, d, (0.0, 1.0), &[], &mut found);
+            assert_eq!(found.len(), 1);
+            let place = Rat::frac(g - h, s - r);
+            for (other, y) in &known {
+                assert_eq!(k.cmp(found[0], *y), place.cmp(other), "{place} {other}");
+            }
+            known.push((place, found[0]));
+            let coarse = |f: u32, k: &Kernel| k.frames[f as usize].bits == u64::from(LEVELS[0]);
+            let seen = k.framed.keys().filter(|at| coarse(at.1, k)).count();
+            if i == 2 {
+                assert!(seen > 0, "the first ones were seen from a coarse frame");
+            }
+            // The lines of the first two crossings that differ.
+            assert!(seen <= 4, "{seen} lines were seen from a coarse frame");
+        }
+        assert_eq!(k.frames.len(), LEVELS.len(), "one frame a level");
+    }
+}
