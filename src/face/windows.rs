@@ -183,7 +183,10 @@ impl Tracer<'_> {
             _ => usize::MAX,
         };
         let mut near = std::mem::take(&mut self.near);
-        if self.gather(item, (from, to), most, false, &mut near) {
+        if self.gather(item, (from, to), most, false, &mut near)
+            || self.glued(item, (from, to), &near)
+                && self.gather(item, (from, to), usize::MAX, false, &mut near)
+        {
             self.stop(item, w, &near);
             // As many different points in so small a window: not one point that many pass through.
             let Window {
@@ -196,7 +199,7 @@ impl Tracer<'_> {
             }
         } else {
             let mid = match crowded {
-                None if depth % LOOK == 0 && depth > 0 => {
+                None if depth.is_multiple_of(LOOK) && depth > 0 => {
                     self.beside_crowd(item, (from, to), &near).unwrap_or(mid)
                 }
                 _ => mid,
@@ -209,6 +212,43 @@ impl Tracer<'_> {
             self.windows[w as usize].kids = kids;
         }
         self.near = near;
+    }
+
+    /// Whether some of those that are near a window, and so perhaps all, cannot be told from the item in doubles
+    /// anywhere: however small its halves, none would have fewer.
+    fn glued(&self, item: u32, (from, to): (f64, f64), near: &[u32]) -> bool {
+        let Carrier::Graph(c) = self.items[item as usize].carrier else {
+            return false;
+        };
+        // Not where halves begin, which are places that data like.
+        let places = [0.3, 0.7].map(|s| from + (to - from) * s);
+        let last = near.len() - 1;
+        (0..SOME).all(|i| {
+            let b = near[i * last / (SOME - 1)];
+            match self.items[b as usize].carrier {
+                Carrier::Graph(d) => places.iter().all(|&x| !self.apart(item, b, (c, d), x, x)),
+                Carrier::Vertical(..) => false,
+            }
+        })
+    }
+
+    /// Whether two items surely do not meet over [lo, hi].
+    fn apart(&self, item: u32, other: u32, (c, d): (CurveId, CurveId), lo: f64, hi: f64) -> bool {
+        let k = &*self.k;
+        if c == d {
+            return false;
+        }
+        match self.pencils.get(self.common_pencil(item, other) as usize) {
+            Some(shared) if shared.straight => false,
+            Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
+            None => {
+                k.miss(c, d, lo, hi)
+                    || self
+                        .busy
+                        .get(&item)
+                        .is_some_and(|mine| self.only_there(mine, other, (c, d), lo, hi))
+            }
+        }
     }
 
     /// Where to cut a window beside a place where some of those that are near, and so perhaps many of them, meet an item
@@ -284,8 +324,7 @@ impl Tracer<'_> {
         let mut stamp = std::mem::take(&mut self.stamp);
         let (items, k) = (self.items, &*self.k);
         let me = &items[item as usize];
-        let busy = self.busy.get(&item);
-        let (mut few, mut tests, mut wasted) = (true, 0, 0);
+        let (mut count, mut tests, mut wasted) = (0, 0, 0);
         let mut consider = |b: u32| {
             if stamp[b as usize] == serial {
                 return true;
@@ -297,28 +336,22 @@ impl Tracer<'_> {
             if me.color != 0 && other.color == me.color {
                 return true;
             }
-            if let (Carrier::Graph(c), Carrier::Graph(d)) = (me.carrier, other.carrier)
-                && c != d
-            {
-                let lo = range.0.max(k.enclosure(other.l).0);
-                let hi = range.1.min(k.enclosure(other.r).1);
-                let vain = lo > hi
-                    || match self.pencils.get(self.common_pencil(item, b) as usize) {
-                        Some(shared) if shared.straight => false,
-                        Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
-                        None => {
-                            k.miss(c, d, lo, hi)
-                                || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
-                        }
-                    };
-                if vain {
+            if let (Carrier::Graph(c), Carrier::Graph(d)) = (me.carrier, other.carrier) {
+                let (left, right) = (k.enclosure(other.l), k.enclosure(other.r));
+                // One on the same curve that covers the range is there in every part of it: halving cannot help.
+                if c == d && left.1 < range.0 && range.1 < right.0 {
+                    near.push(b);
+                    return true;
+                }
+                let (lo, hi) = (range.0.max(left.0), range.1.min(right.1));
+                if c != d && (lo > hi || self.apart(item, b, (c, d), lo, hi)) {
                     wasted += 1;
                     return true;
                 }
             }
             near.push(b);
-            few = near.len() <= most;
-            few
+            count += 1;
+            count <= most
         };
         let (mut inner, mut p) = (NONE, innermost);
         while let (Some(pencil), Carrier::Graph(c)) = (self.pencils.get(p as usize), me.carrier) {
@@ -355,6 +388,7 @@ impl Tracer<'_> {
                 outermost != NONE && self.in_pencil(b, outermost) || consider(b)
             });
         }
+        let few = count <= most;
         self.stamp = stamp;
         self.tests += tests;
         self.wasted += wasted;
