@@ -3,74 +3,69 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod common;
+#[path = "common/world/rng.rs"]
+mod rng;
 
 use common::count;
+use rng::Rng;
 use snapfit::certificate::lp::{Claim, verify};
 use snapfit::lp::{Accuracy, Certificate, Model, Options, Outcome, Range, Status, report, solve};
 use snapfit::number::{Int, Rat};
 
-struct Random(u64);
+/// A multiple of 2⁻²⁰ between −2 and 2.
+fn fraction(r: &mut Rng) -> Rat {
+    Rat::frac(r.below(1 << 22) as i64 - (1 << 21), 1 << 20)
+}
 
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) % n
-    }
-    /// A multiple of 2⁻²⁰ between −2 and 2.
-    fn fraction(&mut self) -> Rat {
-        Rat::frac(self.below(1 << 22) as i64 - (1 << 21), 1 << 20)
-    }
-    fn positive(&mut self) -> Rat {
-        Rat::frac(1 + self.below(1 << 20) as i64, 1 << 20)
-    }
+/// A multiple of 2⁻²⁰ above 0, up to 1.
+fn positive(r: &mut Rng) -> Rat {
+    Rat::frac(1 + r.below(1 << 20) as i64, 1 << 20)
 }
 
 /// A chain of mostly free columns; inequalities between neighbours, from one side or both, with
 /// the origin inside. Without its last rows it may be unbounded.
-fn chain(r: &mut Random, size: usize, closed: bool) -> Model {
+fn chain(r: &mut Rng, size: usize, closed: bool) -> Model {
     let mut model = Model::new("chain");
     model.maximise = r.below(2) == 0;
     for j in 0..size {
         let range = match r.below(8) {
-            0 => Range::at_least(-r.positive()),
+            0 => Range::at_least(-positive(r)),
             1 => Range {
-                lower: Some(-r.positive()),
-                upper: Some(r.positive()),
+                lower: Some(-positive(r)),
+                upper: Some(positive(r)),
             },
             _ => Range::free(),
         };
         let cost = if r.below(3) == 0 {
-            r.fraction()
+            fraction(r)
         } else {
             Rat::zero()
         };
         model.add_column(&format!("x{j}"), cost, range);
     }
-    model.constant = r.fraction();
+    model.constant = fraction(r);
     for j in 0..size {
         for k in 0..2 + r.below(4) {
             let range = match (k, r.below(4)) {
                 (0, _) => Range {
-                    lower: Some(-r.positive()),
-                    upper: Some(r.positive()),
+                    lower: Some(-positive(r)),
+                    upper: Some(positive(r)),
                 },
-                (_, 0) => Range::at_most(r.positive()),
-                _ => Range::at_least(-r.positive()),
+                (_, 0) => Range::at_most(positive(r)),
+                _ => Range::at_least(-positive(r)),
             };
             let i = model.add_row(&format!("r{j}.{k}"), range);
-            model.set(i, j, r.fraction());
+            model.set(i, j, fraction(r));
             if j + 1 < size {
-                model.set(i, j + 1, r.fraction());
+                model.set(i, j + 1, fraction(r));
             }
         }
     }
     if closed {
         for j in 0..size {
-            let i = model.add_row(&format!("s{j}"), Range::at_least(-r.positive()));
+            let i = model.add_row(&format!("s{j}"), Range::at_least(-positive(r)));
             model.set(i, j, Rat::one());
-            let i = model.add_row(&format!("t{j}"), Range::at_most(r.positive()));
+            let i = model.add_row(&format!("t{j}"), Range::at_most(positive(r)));
             model.set(i, j, Rat::one());
         }
     }
@@ -103,7 +98,7 @@ fn holds(enclosure: &(Option<Rat>, Option<Rat>), optimum: &Rat) -> bool {
 /// The enclosure holds the exact optimum, is narrow, and survives its journey through JSON.
 #[test]
 fn nearly_exact_prices_enclose_the_optimum() {
-    let mut r = Random(0x1357_9bdf_0246_8ace);
+    let mut r = Rng::new(0x1357_9bdf_0246_8ace);
     let (mut near, mut all) = (0, 0);
     for k in 0..count(4000) {
         let size = 2 + r.below(if k % 8 == 0 { 30 } else { 8 }) as usize;
@@ -135,7 +130,7 @@ fn nearly_exact_prices_enclose_the_optimum() {
 /// an enclosure that is not what it proves is never accepted.
 #[test]
 fn damaged_certificates_prove_nothing_false() {
-    let mut r = Random(0xfeed_5eed_cafe_0001);
+    let mut r = Rng::new(0xfeed_5eed_cafe_0001);
     let (mut done, mut rejected) = (0, 0);
     let nominal = count(10_000).max(100);
     while done < nominal {
@@ -198,7 +193,7 @@ fn damaged_certificates_prove_nothing_false() {
                     let Some(entry) = point.numerators.first_mut() else {
                         continue;
                     };
-                    entry.1 = &entry.1 * &(Rat::one() + r.fraction());
+                    entry.1 = &entry.1 * &(Rat::one() + fraction(&mut r));
                 }
             }
             done += 1;

@@ -43,7 +43,7 @@ use super::field::{
     Body, Directions, Field, Model, Point, Side, cross, dot, minus, negative, positive,
 };
 use crate::number::Interval;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Orientation in cells: n (odd) a half-turn, numbered along the covering line; θ = 0 is inside
 /// cell (n − 1)/2 of half-turn 0, which is numbered 0.
@@ -140,8 +140,9 @@ struct Touch {
 /// What is known of a cell.
 #[derive(Clone, Copy)]
 pub(super) struct Known {
+    /// No pawl is there.
     blocked: bool,
-    /// A contact may hold a pawl there, upper side and lower side of rest.
+    /// A contact or a stop may hold a pawl there, away from rest.
     holds: bool,
 }
 
@@ -250,12 +251,12 @@ impl<'a> View<'a> {
     /// The cells in which a pawl can be during the slab, from those of the slab before; None past
     /// the turns that are followed.
     pub(super) fn advance(&mut self, before: &[i64], first: bool) -> Option<Vec<i64>> {
-        let mut live: BTreeMap<i64, ()> = BTreeMap::new();
+        let mut live: BTreeSet<i64> = BTreeSet::new();
         let mut queue: Vec<i64> = Vec::new();
         for &c in before {
             // Where a motion begins the pawl may be held by nothing, and snaps.
             if first && !self.known(c).blocked || self.alive(c) {
-                live.insert(c, ());
+                live.insert(c);
                 queue.push(c);
             }
         }
@@ -277,7 +278,7 @@ impl<'a> View<'a> {
             let mut at = c;
             while at != 0 {
                 at -= at.signum();
-                if live.contains_key(&at) && at != 0 && self.alive(at) {
+                if live.contains(&at) && at != 0 && self.alive(at) {
                     // It has gone on from there itself.
                     break;
                 }
@@ -289,13 +290,13 @@ impl<'a> View<'a> {
                 }
             }
             for r in reached {
-                if live.insert(r, ()).is_none() {
+                if live.insert(r) {
                     queue.push(r);
                 }
             }
         }
         // One that only began here and is held by nothing is gone.
-        Some(live.into_keys().filter(|&c| self.alive(c)).collect())
+        Some(live.into_iter().filter(|&c| self.alive(c)).collect())
     }
 
     fn alive(&mut self, cell: i64) -> bool {

@@ -13,12 +13,10 @@ use super::classify::Ask;
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
 use crate::kernel::Certified;
-use crate::motion::phase::{Run, Setting, run};
+use crate::motion::phase::{End, Run, Setting, run};
 use crate::motion::root::first_collision;
 use crate::motion::solids::Solids;
-use crate::motion::{
-    Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Segment, Trajectory,
-};
+use crate::motion::{Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, Trajectory};
 use crate::number::filter::with_filter;
 use crate::number::{Algebraic, Int, Poly, Rat};
 use crate::scene::{Motion, Scene};
@@ -180,48 +178,40 @@ impl<'a> Ground<'a> {
                 Some(&duration),
             )
         });
-        let runs: Vec<Run<Certified<FILTER>>> = self
-            .scene
-            .pawls
-            .iter()
-            .enumerate()
-            .map(|(i, pawl)| {
-                let frame = Frame {
-                    p0: &pawl.hinge + &start.offset,
-                    v: velocity.clone(),
-                    duration: duration.clone(),
-                };
-                let limits = pawl.limits.as_ref();
-                let slice = Slice::new(frame, &self.shapes[i], &self.obstacles, limits);
-                let set = Setting {
-                    shape: &self.turning[i],
-                    obstacles: &self.fixed,
-                    limits,
-                    friction,
-                    phase: 0,
-                    probe: collision.as_ref().map(|c| &c.0),
-                    stop: &stop,
-                    method: crate::motion::Method::Naive,
-                    known: None,
-                    face: crate::face::Method::Auto,
-                };
-                let angle = Angle {
-                    half_turn: start.angles[i].half_turn,
-                    x: start.angles[i].x.clone(),
-                };
-                run(&slice, &set, &angle, &start.touching[i])
-            })
-            .collect();
-        let mut ends: Vec<(Time, OutcomeKind, Option<usize>)> = runs
-            .iter()
-            .enumerate()
-            .filter_map(|(i, r)| r.end.as_ref().map(|e| (e.1.clone(), e.0, Some(i))))
-            .collect();
-        if let Some((t, _)) = &collision {
-            ends.push((Time::from(t.clone()), OutcomeKind::RootCollision, None));
+        // Pawls are followed no further than to the first end known.
+        let mut over: Option<End<Certified<FILTER>>> = collision
+            .as_ref()
+            .map(|(t, _)| (Time::from(t.clone()), OutcomeKind::RootCollision, None));
+        let mut runs: Vec<Run<Certified<FILTER>>> = Vec::with_capacity(self.scene.pawls.len());
+        for (i, pawl) in self.scene.pawls.iter().enumerate() {
+            let frame = Frame {
+                p0: &pawl.hinge + &start.offset,
+                v: velocity.clone(),
+                duration: duration.clone(),
+            };
+            let limits = pawl.limits.as_ref();
+            let slice = Slice::new(frame, &self.shapes[i], &self.obstacles, limits);
+            let set = Setting {
+                shape: &self.turning[i],
+                obstacles: &self.fixed,
+                limits,
+                friction,
+                phase: 0,
+                probe: over.as_ref().map(|o| &o.0),
+                stop: &stop,
+                method: crate::motion::Method::Naive,
+                known: None,
+                face: crate::face::Method::Auto,
+            };
+            let angle = Angle {
+                half_turn: start.angles[i].half_turn,
+                x: start.angles[i].x.clone(),
+            };
+            let run = run::<Certified<FILTER>>(&slice, &set, &angle, &start.touching[i]);
+            over = over.into_iter().chain(run.ends_plan(i)).min();
+            runs.push(run);
         }
-        ends.sort();
-        let over = ends.into_iter().next().filter(|e| e.0 < end);
+        let over = over.filter(|e| e.0 < end);
         let (kind, cut, by) = match over {
             Some((t, kind, by)) => (kind, t, by),
             None => (OutcomeKind::Completed, end, None),
@@ -277,13 +267,8 @@ fn trace<const FILTER: bool>(
             root_contacts: contacts.clone(),
         });
     }
-    let mut segments: Vec<Segment<Certified<FILTER>>> = run.segments;
-    segments.retain(|s| s.from < *cut);
-    for s in &mut segments {
-        if s.to > *cut {
-            s.to = cut.clone();
-        }
-    }
+    let before = run.segments.into_iter().take_while(|s| s.from < *cut);
+    let segments = before.map(|s| s.until(cut)).collect();
     PawlTrace {
         name: name.to_owned(),
         events,

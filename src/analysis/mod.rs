@@ -33,6 +33,7 @@ pub mod stretch;
 pub mod summary;
 pub mod total;
 mod way;
+mod work;
 
 pub use classify::{Ask, Verdict};
 pub use document::{ClassifyDocument, classify, classify_schema, forces_schema};

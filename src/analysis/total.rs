@@ -233,7 +233,8 @@ pub fn total(ground: &Ground<'_>, start: &Start, family: &[Vec2]) -> Total {
     }
 }
 
-/// How many flips are isolated.
+/// How many flips are isolated; also how many edges, and how many arcs that resist, have their own
+/// direction tried.
 pub(super) const FLIPS: usize = 32;
 
 /// The verdict of a direction, the time at which it is blocked, how and by whom.
@@ -304,12 +305,22 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// One direction by itself, over the whole distance.
+    fn decide(&self, w: &Vec2) -> Direction {
+        direction(self.ground, self.start, w, &self.distance2, false)
+    }
+
+    /// Notes a verdict: the circle is as firm as the weakest.
+    fn met(&mut self, verdict: Verdict) {
+        self.weakest = Some(self.weakest.map_or(verdict, |w| w.min(verdict)));
+    }
+
     fn run(&mut self, family: &[Vec2]) {
         // Coarse samples first: most ways out are wide. A narrow one is most likely along an edge.
-        let samples = 8;
+        let coarse = 8;
         for quarter in 0..4 {
-            for k in 0..samples {
-                let s = Rat::frac(k, samples);
+            for k in 0..coarse {
+                let s = Rat::frac(k, coarse);
                 if self.tried(quarter, &s).is_none() {
                     return;
                 }
@@ -322,18 +333,18 @@ impl Search<'_> {
             if self.ground.late() {
                 return;
             }
-            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            let d = self.decide(&w);
             if d.open {
                 continue;
             }
-            self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+            self.met(d.verdict);
             if d.verdict == Verdict::None {
                 self.escape = Some(w);
                 return;
             }
         }
         for quarter in 0..4 {
-            self.cover(Arc::whole(quarter), 0);
+            self.cover_arc(Arc::whole(quarter), 0);
             if self.escape.is_some() {
                 return;
             }
@@ -348,12 +359,12 @@ impl Search<'_> {
             .collect();
         for arc in open.iter().take(FLIPS) {
             let w = short_direction(arc.quarter, &arc.from, &arc.to);
-            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            let d = self.decide(&w);
             if self.ground.late() {
                 return;
             }
             if !d.open {
-                self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+                self.met(d.verdict);
                 if d.verdict == Verdict::None {
                     self.escape = Some(w);
                     return;
@@ -410,7 +421,7 @@ impl Search<'_> {
         while &high.s - &low.s > width {
             let s = Rat::midpoint(&low.s, &high.s);
             let w = Arc::unit(low.quarter, &s);
-            let d = direction(self.ground, self.start, &w, &self.distance2, false);
+            let d = self.decide(&w);
             if d.open || self.ground.late() {
                 break;
             }
@@ -434,7 +445,7 @@ impl Search<'_> {
         // Else one of the sides is, at the end of a quarter.
         let sides = [&low, &high].map(|k| (Arc::unit(k.quarter, &k.s), k.verdict));
         let critical = if few(&between) {
-            let d = direction(self.ground, self.start, &between, &self.distance2, false);
+            let d = self.decide(&between);
             Some((between, d.verdict))
         } else {
             sides.into_iter().find(|(w, _)| few(w))
@@ -462,7 +473,7 @@ impl Search<'_> {
             return None;
         }
         let w = Arc::unit(quarter, s);
-        let d = direction(self.ground, self.start, &w, &self.distance2, false);
+        let d = self.decide(&w);
         let end = (d.run.outcome.kind, d.run.outcome.pawl);
         if d.open {
             // A force that cannot be told from the limit is open as well.
@@ -478,7 +489,7 @@ impl Search<'_> {
             verdict: d.verdict,
             course: course(&d),
         });
-        self.weakest = Some(self.weakest.map_or(d.verdict, |v| v.min(d.verdict)));
+        self.met(d.verdict);
         if d.verdict == Verdict::None {
             self.escape.get_or_insert(w);
             return Some((Verdict::None, self.distance, end));
@@ -501,7 +512,8 @@ impl Search<'_> {
         t.affine(&Rat::zero(), &self.unit).interval().hi
     }
 
-    fn cover(&mut self, mut arc: Arc, depth: u32) {
+    /// Covers an arc, whole where it is proven and else by halves, unless a way out is met.
+    fn cover_arc(&mut self, mut arc: Arc, depth: u32) {
         if self.escape.is_some() {
             return;
         }
@@ -532,8 +544,8 @@ impl Search<'_> {
             open: false,
             middle: None,
         };
-        self.cover(half(&arc.from, &mid), depth + 1);
-        self.cover(half(&mid, &arc.to), depth + 1);
+        self.cover_arc(half(&arc.from, &mid), depth + 1);
+        self.cover_arc(half(&mid, &arc.to), depth + 1);
     }
 
     /// Tries to prove that every direction of the arc gets out.

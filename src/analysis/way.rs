@@ -5,7 +5,7 @@
 
 use super::bound::{Bound, Unbounded};
 use super::document::contact;
-use super::drive::{Extremes, Slide, Work, extremes, instant, trace, work};
+use super::drive::{Extremes, Slide, extremes, instant, trace};
 use super::escape::Ground;
 use super::fix::Bits;
 use super::force_document::{
@@ -17,6 +17,7 @@ use super::handbook::handbook;
 use super::load::{Part, Rig};
 use super::peak::{Instant, Peak, Peaked, force, higher, torque};
 use super::stretch::{Stretch, stretches};
+use super::work::{Work, work};
 use crate::motion::{OutcomeKind, Trajectory};
 use crate::number::{Algebraic, Rat};
 use crate::report::Num;

@@ -172,7 +172,8 @@ impl<'a> Motion<'a> {
             let (x, y) = (at(0), at(1));
             [c * x + k * y, c * y - k * x]
         };
-        let apart = {
+        // How far apart the reference points ever are, and how far one moves past the other.
+        let (far, drift) = {
             let d = |i: usize| (p2.centre[i] - p1.centre[i]).abs();
             let m = |i: usize| (self.near_shift[two][i] - self.near_shift[one][i]).abs();
             (d(0) + d(1) + m(0) + m(1), m(0) + m(1))
@@ -180,8 +181,8 @@ impl<'a> Motion<'a> {
         // |ρ″| of ρ(s) = R₁(s)ᵀ(Δ(s) + R₂(s)r): angles have |φ′| ≤ 2|w|, |φ″| ≤ 2|w|².
         let (a1, a12) = (2.0 * w1.abs(), 2.0 * (w1.abs() + w2.abs()));
         let bend =
-            (a1 * a1 + w1 * w1 * 2.0) * apart.0 + 2.0 * a1 * apart.1 + (a12 * a12 * 1.5) * s2.reach;
-        let size_of_all = apart.0 + s1.reach + s2.reach + p1.centre[0].abs() + p1.centre[1].abs();
+            (a1 * a1 + w1 * w1 * 2.0) * far + 2.0 * a1 * drift + (a12 * a12 * 1.5) * s2.reach;
+        let size_of_all = far + s1.reach + s2.reach + p1.centre[0].abs() + p1.centre[1].abs();
         let stray = bend / 8.0 * (1.0 + 1e-6) + 1e-9 * (1.0 + size_of_all);
         let reach = |ring: &[[f64; 2]], i: usize| {
             ring.iter()

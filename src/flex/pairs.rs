@@ -117,15 +117,6 @@ pub(crate) fn box_of(p: &Placed) -> Box2 {
     })
 }
 
-/// What a vertex is to an edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Seen {
-    /// Paired with it.
-    Paired,
-    /// Beside it or beyond ε, but no obstacle to a corner pair.
-    Away,
-}
-
 /// One body against another: vertices of `b` against edges of `a`.
 struct Duel<'a> {
     scaffold: &'a Scaffold,
@@ -142,7 +133,7 @@ struct Duel<'a> {
 
 impl Duel<'_> {
     /// Whether vertex `v` of b is paired with edge `k` of a.
-    fn see(&self, v: usize, k: usize) -> Seen {
+    fn pairs(&self, v: usize, k: usize) -> bool {
         let shape = &self.scaffold.shapes[self.a];
         let next = (k + 1) % shape.len();
         let (e0, e1, p) = (self.pa.near[k], self.pa.near[next], self.pb.near[v]);
@@ -156,25 +147,25 @@ impl Duel<'_> {
         let b = 4.0 * (self.pa.blur + self.pb.blur);
         let b = b + b * (px.abs() + py.abs()) / length + 1e-12 * (px.abs() + py.abs());
         if !b.is_finite() {
-            return self.see_exactly(v, k);
+            return self.pairs_exactly(v, k);
         }
         if s > self.epsilon_near + b || s < -self.slack_near - b {
-            return Seen::Away;
+            return false;
         }
         let sure_height = s < self.epsilon_near - b && s > -self.slack_near + b;
         let reflex = |c: usize| shape.corners[c] == Corner::Reflex;
         let past_start = if reflex(k) { self.epsilon_near } else { 0.0 };
         let past_end = if reflex(next) { self.epsilon_near } else { 0.0 };
         if f < -past_start - b || f > length + past_end + b {
-            return Seen::Away;
+            return false;
         }
         if sure_height && f > -past_start + b && f < length + past_end - b {
-            return Seen::Paired;
+            return true;
         }
-        self.see_exactly(v, k)
+        self.pairs_exactly(v, k)
     }
 
-    fn see_exactly(&self, v: usize, k: usize) -> Seen {
+    fn pairs_exactly(&self, v: usize, k: usize) -> bool {
         let shape = &self.scaffold.shapes[self.a];
         let next = (k + 1) % shape.len();
         let (e0, e1, p) = (self.pa.vertex(k), self.pa.vertex(next), self.pb.vertex(v));
@@ -193,11 +184,7 @@ impl Duel<'_> {
             over.sign() <= 0
                 || (shape.corners[corner] == Corner::Reflex && within(&over, self.epsilon))
         };
-        if height && past(-&f, k) && past(&f - &l2, next) {
-            Seen::Paired
-        } else {
-            Seen::Away
-        }
+        height && past(-&f, k) && past(&f - &l2, next)
     }
 
     /// Adds the pairs of b's vertices with a's edges.
@@ -216,7 +203,7 @@ impl Duel<'_> {
                 continue;
             }
             for k in 0..shape.len() {
-                if self.see(v, k) == Seen::Paired {
+                if self.pairs(v, k) {
                     out.push(Pair {
                         line_body: self.a as u32,
                         plane: Plane::Edge(k as u32),
@@ -238,7 +225,7 @@ pub(crate) fn select(scaffold: &Scaffold, placed: &[Placed], slack: &Rat) -> Sel
     let epsilon = &scaffold.epsilon;
     let moves =
         |a: usize, b: usize| scaffold.forms[a] != Form::Fixed || scaffold.forms[b] != Form::Fixed;
-    let near = |pairs: &mut Vec<(usize, usize)>| {
+    let tidy = |pairs: &mut Vec<(usize, usize)>| {
         pairs.sort_unstable();
         pairs.dedup();
         pairs.retain(|&(a, b)| moves(a, b));
@@ -272,10 +259,10 @@ pub(crate) fn select(scaffold: &Scaffold, placed: &[Placed], slack: &Rat) -> Sel
         }
     }
     open.extend(&scaffold.extra);
-    near(&mut open);
+    tidy(&mut open);
     if let Some(count) = scaffold.nearest {
         let mut chosen = nearest(placed, count);
-        near(&mut chosen);
+        tidy(&mut chosen);
         for &(a, b) in &chosen {
             separate(scaffold, placed, a, b, &mut out.pairs);
         }

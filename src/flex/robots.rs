@@ -30,6 +30,21 @@ fn cent(v: i64) -> Rat {
     Rat::frac(v, 100)
 }
 
+/// An octagon from one end of its rear side to the other, by one corner: how far each of its corners
+/// lies along a direction and across it.
+fn octagon((a, b): Cent) -> [Cent; 8] {
+    [
+        (-a, b),
+        (-b, a),
+        (b, a),
+        (a, b),
+        (a, -b),
+        (b, -a),
+        (-b, -a),
+        (-a, -b),
+    ]
+}
+
 /// Adds the outline of an arm with its head, in a direction of length 1 that leaves the hull by
 /// its right, upper or left side.
 fn arm(to: &Vec2, outline: &mut Vec<Vec2>) {
@@ -49,20 +64,10 @@ fn arm(to: &Vec2, outline: &mut Vec<Vec2>) {
             at((face - &to.y * &cent(across)) / &to.x, across)
         }
     };
-    let (a, b) = HEAD;
-    let head = [
-        (-a, b),
-        (-b, a),
-        (b, a),
-        (a, b),
-        (a, -b),
-        (b, -a),
-        (-b, -a),
-        (-a, -b),
-    ];
-    outline.push(root(b));
-    outline.extend(head.map(|(along, across)| at(cent(ARM + along), across)));
-    outline.push(root(-b));
+    let side = HEAD.1;
+    outline.push(root(side));
+    outline.extend(octagon(HEAD).map(|(along, across)| at(cent(ARM + along), across)));
+    outline.push(root(-side));
 }
 
 /// A robot of the tree, its hinge at the origin of its frame, its elder below it.
@@ -82,19 +87,9 @@ fn member(hinge: bool, right: Option<&Vec2>, ahead: bool, left: Option<&Vec2>) -
     }
     v.push(corner(-HULL, -HULL));
     if hinge {
-        let (a, b) = SOCKET;
         v.push(corner(-MOUTH, -HULL));
-        let socket = [
-            (-b, -a),
-            (-a, -b),
-            (-a, b),
-            (-b, a),
-            (b, a),
-            (a, b),
-            (a, -b),
-            (b, -a),
-        ];
-        v.extend(socket.map(|(x, y)| corner(x, y)));
+        // Cut out, so gone round the other way than a head.
+        v.extend(octagon(SOCKET).map(|(along, across)| corner(-across, along)));
         v.push(corner(MOUTH, -HULL));
     }
     v

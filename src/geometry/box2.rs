@@ -37,13 +37,6 @@ impl Box2 {
         }
     }
 
-    /// The box around several points, [`Box2::EMPTY`] for none.
-    pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Vec2>) -> Box2 {
-        points
-            .into_iter()
-            .fold(Box2::EMPTY, |b, p| b.hull(&Box2::of_point(p)))
-    }
-
     /// The smallest box around both.
     pub fn hull(&self, other: &Box2) -> Box2 {
         Box2 {

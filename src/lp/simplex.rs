@@ -13,8 +13,9 @@
 //! variable has its violated bound as its only one. After [`PATIENCE`] steps of length zero the
 //! choice of both variables is by least index among the candidates (Bland's rule) until a step
 //! has length, and Bland's rule does not cycle (ties of the ratio test always go to the least).
-//! There are finitely many statuses, finitely many proposals from outside, and the method changes at most three times: the search for a
-//! feasible point that [`run`] may begin with ends in one, after which the primal method keeps it.
+//! There are finitely many statuses, finitely many proposals from outside, and the method changes
+//! at most three times: the search for a feasible point that [`run`] may begin with ends in one,
+//! after which the primal method keeps it.
 
 use super::basis::{Basis, ColumnVector, Frame, Query, RowVector, Status};
 use super::budget::{Budget, Exhausted, Stage};
@@ -106,7 +107,8 @@ pub(crate) fn run<'a>(
     let mut basis = start;
     let mut stalled = 0;
     let mut regular = false;
-    let mut guesses = [None, None, None];
+    // The denominator of the last values: other solutions for the same basis are likely to share it.
+    let mut guess = None;
     let mut seeking = blame;
     loop {
         budget.report(Stage::Exact, effort.pivots);
@@ -119,12 +121,12 @@ pub(crate) fn run<'a>(
             &mut seeking,
             watch,
             refine,
-            &mut guesses,
+            &mut guess,
             budget,
         ) {
             Ok(Step::Jump(next)) => {
                 effort.refinements += 1;
-                (regular, guesses) = (false, [None, None, None]);
+                (regular, guess) = (false, None);
                 basis = next;
             }
             Ok(Step::Done(verdict)) => return Ok(*verdict),
@@ -141,21 +143,20 @@ pub(crate) fn run<'a>(
     }
 }
 
-type Guesses = [Option<Int>; 3];
-
 fn step<'a>(
     frame: Frame<'a>,
     bland: bool,
     seeking: &mut Option<usize>,
     watch: &mut Watch<'_>,
     refine: &mut Refine<'_>,
-    guesses: &mut Guesses,
+    guess: &mut Option<Int>,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
     budget.check()?;
     let p = frame.problem;
-    let values = frame.values(guesses[0].as_ref(), budget)?;
-    guesses[0] = Some(values.solution.denominator.clone());
+    let values = frame.values(guess.as_ref(), budget)?;
+    *guess = Some(values.solution.denominator.clone());
+    let guess = guess.as_ref();
     let breaches: Vec<(usize, Breach)> = frame
         .basics()
         .map(|v| (v, breach(&frame, &values, v)))
@@ -171,9 +172,9 @@ fn step<'a>(
             Some(b) if !bland => std::slice::from_ref(b),
             _ => &breaches[..],
         };
-        return dual_step(frame, &values, breaches, &none, bland, guesses, budget);
+        return dual_step(frame, &values, breaches, &none, bland, guess, budget);
     }
-    let duals = frame.price(|v| cost(p, v), guesses[0].as_ref(), budget)?;
+    let duals = frame.price(|v| cost(p, v), guess, budget)?;
     let improving = entering(&frame, &duals, bland);
     if !infeasible {
         let Some((q, sign)) = improving else {
@@ -189,7 +190,7 @@ fn step<'a>(
         if let Some(basis) = refine(&frame, &values, &duals) {
             return Ok(Step::Jump(basis));
         }
-        return primal_step(frame, values, breaches, q, sign, guesses, budget);
+        return primal_step(frame, values, breaches, q, sign, guess, budget);
     }
     if watch(&frame, None, &duals) {
         return Err(Exhausted);
@@ -198,7 +199,7 @@ fn step<'a>(
         return Ok(Step::Jump(basis));
     }
     if improving.is_none() {
-        return dual_step(frame, &values, &breaches, &duals, bland, guesses, budget);
+        return dual_step(frame, &values, &breaches, &duals, bland, guess, budget);
     }
     // Phase one: a step along the slope of the sum of infeasibilities.
     let mut slope = vec![0i64; p.n + p.m];
@@ -209,10 +210,10 @@ fn step<'a>(
             Breach::None => 0,
         };
     }
-    let prices = frame.price(|v| Int::from(slope[v]), guesses[0].as_ref(), budget)?;
+    let prices = frame.price(|v| Int::from(slope[v]), guess, budget)?;
     match entering(&frame, &prices, bland) {
         None => Ok(Step::Done(Box::new(Verdict::Infeasible { frame, prices }))),
-        Some((q, sign)) => primal_step(frame, values, breaches, q, sign, guesses, budget),
+        Some((q, sign)) => primal_step(frame, values, breaches, q, sign, guess, budget),
     }
 }
 
@@ -311,13 +312,13 @@ impl<'q> Ratio<'q> {
         top: (&'q dyn Exact, Option<Query>),
         bottom: (&'q dyn Exact, Query),
     ) -> Ratio<'q> {
-        let high = match &top.1 {
+        let size = match &top.1 {
             Some(q) => top.0.enclose(q),
             None => (Int::zero(), Int::zero()),
         };
         Ratio {
             variable,
-            enclosure: (high, bottom.0.enclose(&bottom.1)),
+            enclosure: (size, bottom.0.enclose(&bottom.1)),
             top,
             bottom,
             full: None,
@@ -328,11 +329,11 @@ impl<'q> Ratio<'q> {
     fn full(&mut self) -> &(Int, Int) {
         let (top, bottom) = (&self.top, &self.bottom);
         self.full.get_or_insert_with(|| {
-            let high = match &top.1 {
+            let size = match &top.1 {
                 Some(q) => top.0.exact(q).abs(),
                 None => Int::zero(),
             };
-            (high, bottom.0.exact(&bottom.1).abs())
+            (size, bottom.0.exact(&bottom.1).abs())
         })
     }
 
@@ -385,11 +386,11 @@ fn primal_step<'a>(
     breaches: Vec<(usize, Breach)>,
     q: usize,
     sign: i32,
-    guesses: &mut Guesses,
+    guess: Option<&Int>,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
     let p = frame.problem;
-    let direction = frame.direction(q, guesses[0].as_ref(), budget)?;
+    let direction = frame.direction(q, guess, budget)?;
     let feasible = breaches.iter().all(|b| b.1 == Breach::None);
     let mut ratios = Vec::new();
     let mut to_upper = vec![false; p.n + p.m];
@@ -473,7 +474,7 @@ fn dual_step<'a>(
     breaches: &[(usize, Breach)],
     duals: &RowVector,
     bland: bool,
-    guesses: &mut Guesses,
+    guess: Option<&Int>,
     budget: &Budget,
 ) -> Result<Step<'a>, Exhausted> {
     let p = frame.problem;
@@ -497,11 +498,7 @@ fn dual_step<'a>(
     };
     // The infeasibility of r alone as the cost: what cannot lower it proves infeasibility.
     let slope = if b == Breach::Below { -1i64 } else { 1 };
-    let row = frame.price(
-        |v| Int::from(if v == r { slope } else { 0 }),
-        guesses[0].as_ref(),
-        budget,
-    )?;
+    let row = frame.price(|v| Int::from(if v == r { slope } else { 0 }), guess, budget)?;
     let mut ratios = Vec::new();
     for v in 0..frame.basis.status.len() {
         if frame.basis.status[v] == Status::Basic {

@@ -42,8 +42,20 @@ pub struct Run<K: Kernel = Filtered> {
     pub faces: FaceCost,
 }
 
+/// What may end a plan: when, how, and which pawl (None: the root). The least ends it: the first of any kind, at
+/// one instant the graver kind, then the first pawl of the file.
+pub(crate) type End<K> = (<K as Kernel>::Time, OutcomeKind, Option<usize>);
+
+impl<K: Kernel> Run<K> {
+    /// How this run of the `pawl`-th pawl may end the plan.
+    pub(crate) fn ends_plan(&self, pawl: usize) -> Option<End<K>> {
+        let (kind, at, _) = self.end.as_ref()?;
+        Some((at.clone(), *kind, Some(pawl)))
+    }
+}
+
 /// What a pawl's run needs besides the slice.
-pub struct Setting<'a> {
+pub struct Setting<'a, K: Kernel = Filtered> {
     /// The pawl's polygon about its hinge, at θ = 0.
     pub shape: &'a Polygon,
     /// The obstacles.
@@ -54,9 +66,9 @@ pub struct Setting<'a> {
     pub friction: Option<&'a Rat>,
     /// Index of the phase.
     pub phase: usize,
-    /// The instant at which the plan is over whatever the pawl does (the root's collision): the orientation
-    /// there is wanted, and nothing after it is worked out.
-    pub probe: Option<&'a Rat>,
+    /// The instant at which the plan is over whatever the pawl does (the root collides, or another pawl has
+    /// ended it): the orientation there is wanted, and nothing after it is worked out.
+    pub probe: Option<&'a K::Time>,
     /// Asked between events; true ends the run undecided.
     pub stop: &'a dyn Fn() -> bool,
     /// Which arcs are looked at.
@@ -104,11 +116,10 @@ impl Method {
 
 pub(super) struct Runner<'a, K: Kernel> {
     pub(super) slice: &'a Slice<K>,
-    pub(super) set: &'a Setting<'a>,
-    /// Angular stops, μ and the probe in the kernel's numbers.
+    pub(super) set: &'a Setting<'a, K>,
+    /// Angular stops and μ in the kernel's numbers.
     pub(super) limits: Option<(K::Num, K::Num)>,
     pub(super) friction: Option<K::Num>,
-    pub(super) probe_at: Option<K::Num>,
     pub(super) end: K::Time,
     pub(super) zero: K::Root,
     pub(super) state: State,
@@ -135,7 +146,7 @@ pub(super) struct Runner<'a, K: Kernel> {
 /// known (the end of the phase before), which are not reported anew.
 pub fn run<K: Kernel>(
     slice: &Slice<K>,
-    set: &Setting<'_>,
+    set: &Setting<'_, K>,
     start: &Angle<K>,
     touching: &[Contact],
 ) -> Run<K> {
@@ -147,7 +158,6 @@ pub fn run<K: Kernel>(
         set,
         limits: set.limits.map(|(lo, hi)| (num(lo), num(hi))),
         friction: set.friction.map(num),
-        probe_at: set.probe.map(num),
         end: K::Time::of(slice.frame.duration.clone()),
         zero,
         state: State::Rest,
@@ -199,7 +209,10 @@ impl<K: Kernel> Runner<'_, K> {
         );
         let next = self.begin(start, &z, &inc, touching);
         let known = self.set.method == Method::Auto && self.set.known.is_some();
-        if (known || self.set.method.sweeps(self.slice.arcs().len())) && K::ENCLOSES {
+        // By name every kernel that can vouch for F sweeps; of itself only the one that asks enclosures.
+        let asked = K::CERTIFIED && self.set.method == Method::Sweep;
+        let pays = K::ENCLOSES && self.set.method.sweeps(self.slice.arcs().len());
+        if known || asked || pays {
             let seed = self.seed(&next, start, &z, &inc);
             self.look_from(seed);
         }
@@ -308,23 +321,22 @@ impl<K: Kernel> Runner<'_, K> {
     /// Where the state passes the probe before `next`: notes the orientation there, and stops if that is before
     /// the phase's end. What would happen later, nobody asks.
     fn probe(&mut self, next: Option<&K::Time>) -> Option<Stop<K>> {
-        let t = self.probe_at.as_ref().filter(|_| self.probed.is_none())?;
-        if next.is_some_and(|n| n.cmp_num(t).is_le()) {
+        let at = self.set.probe.filter(|_| self.probed.is_none())?;
+        if next.is_some_and(|n| n <= at) {
             return None;
         }
-        let at = K::Time::of(t.clone());
         let angle = match self.state {
             State::Rest => Angle::rest(),
             State::On { arc, half_turn, .. } => Angle {
                 half_turn,
-                x: self.position(arc, &at),
+                x: self.position(arc, at),
             },
         };
         self.probed = Some(angle.clone());
-        if self.end <= at {
+        if self.end <= *at {
             return None;
         }
-        self.cut(&at, &angle, &angle);
+        self.cut(at, &angle, &angle);
         Some(Stop::Over(angle))
     }
 

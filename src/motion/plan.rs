@@ -1,12 +1,11 @@
 //! Plans: phases one after the other, all pawls and the root together.
 
 use super::ledger::{Ledger, PhaseCost};
-use super::phase::{Method, Run, Setting, run};
+use super::phase::{End, Method, Run, Setting, run};
 use super::root::first_collision;
 use super::solids::Solids;
 use super::trajectory::{
-    Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Segment,
-    Trajectory,
+    Angle, Event, EventKind, Outcome, OutcomeKind, PawlTrace, Phase, RootContact, Trajectory,
 };
 use crate::contact::{Contact, Frame, ObstacleShape, PawlShape};
 use crate::geometry::{Polygon, Vec2};
@@ -60,11 +59,12 @@ impl Arithmetic {
 
 impl Method {
     /// What runs under an arithmetic. F is traced with certified doubles first: so the reference, which
-    /// knows none, scans, and so do doubles alone, which cannot vouch for F.
+    /// knows none, scans unless the sweep is asked for by name; doubles alone always do, as they cannot
+    /// vouch for F.
     pub fn under(self, arithmetic: &Arithmetic) -> Method {
-        match arithmetic {
-            Arithmetic::Filtered => self,
-            Arithmetic::Exact | Arithmetic::F64(_) => Method::Naive,
+        match (arithmetic, self) {
+            (Arithmetic::Filtered, _) | (Arithmetic::Exact, Method::Sweep) => self,
+            (Arithmetic::Exact | Arithmetic::F64(_), _) => Method::Naive,
         }
     }
 }
@@ -221,6 +221,14 @@ fn simulate_with<K: Kernel>(
             offset: offset.clone(),
             velocity: plan.velocity.clone(),
         };
+        // What ends the plan, as far as is known: a pawl is followed no further than that. One that comes before
+        // the culprit in the file has been followed all the way; to spare it that, all pawls would have to go
+        // forward together, their next instants compared at every step.
+        let collides = plan.collision.as_ref().map(|c| K::Time::of(num(&c.0)));
+        let mut over: Option<End<K>> = collides
+            .clone()
+            .filter(|_| !plan.until_collision)
+            .map(|t| (t, OutcomeKind::RootCollision, None));
         let mut runs: Vec<Run<K>> = Vec::with_capacity(scene.pawls.len());
         for (i, pawl) in scene.pawls.iter().enumerate() {
             let clock = Instant::now();
@@ -257,7 +265,7 @@ fn simulate_with<K: Kernel>(
                 limits: pawl.limits.as_ref(),
                 friction: scene.friction.as_ref(),
                 phase: index,
-                probe: plan.collision.as_ref().map(|c| &c.0),
+                probe: over.as_ref().map(|o| &o.0).or(collides.as_ref()),
                 stop: &stop,
                 method: options.method,
                 known,
@@ -267,6 +275,7 @@ fn simulate_with<K: Kernel>(
             runs.push(run(&slice, &set, &angles[i], &touching[i]));
             cost.run += clock.elapsed().as_secs_f64();
             if let Some(r) = runs.last() {
+                over = over.into_iter().chain(r.ends_plan(i)).min();
                 let next = scene.motions.get(index + 1);
                 if r.method == Method::Sweep && matches!(next, Some(Motion::Reverse)) {
                     kept[i] = Some((slice.clone(), r.free.clone()));
@@ -288,18 +297,6 @@ fn simulate_with<K: Kernel>(
         if K::CERTIFIED {
             ledger.counts = counts().since(&before_all);
         }
-        // The first end of any kind ends the plan; at one instant the graver kind, then the first
-        // pawl of the file.
-        let mut ends: Vec<(K::Time, OutcomeKind, Option<usize>)> = runs
-            .iter()
-            .enumerate()
-            .filter_map(|(i, r)| r.end.as_ref().map(|e| (e.1.clone(), e.0, Some(i))))
-            .collect();
-        if let Some((t, _)) = plan.collision.as_ref().filter(|_| !plan.until_collision) {
-            ends.push((K::Time::of(num(t)), OutcomeKind::RootCollision, None));
-        }
-        ends.sort();
-        let over = ends.into_iter().next();
         let cut = over.as_ref().map_or(end.clone(), |o| o.0.clone());
         if let Some((t, kind, pawl)) = &over {
             phase.to = t.clone();
@@ -427,17 +424,8 @@ fn append<K: Kernel>(
 ) {
     pawl.events
         .extend(run.events.into_iter().filter(|e| e.time <= *cut));
-    for s in run.segments {
-        if s.from >= *cut {
-            break;
-        }
-        let to = if s.to > *cut {
-            cut.clone()
-        } else {
-            s.to.clone()
-        };
-        pawl.segments.push(Segment { to, ..s });
-    }
+    let before = run.segments.into_iter().take_while(|s| s.from < *cut);
+    pawl.segments.extend(before.map(|s| s.until(cut)));
     let (angle, probed) = (run.angle, run.probed);
     let event = |kind, root_contacts: Vec<RootContact>| Event {
         kind,
@@ -460,5 +448,101 @@ fn append<K: Kernel>(
     }
     if completed {
         pawl.events.push(event(EventKind::PhaseEnd, Vec::new()));
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::motion::Segment;
+    use crate::scene::read_scene;
+
+    /// The first pawl runs its hinge into a wall at t = 5, the second one rides over ten teeth from t = 9/2 on.
+    fn wall_and_teeth() -> Scene {
+        let teeth: String = (0..10)
+            .map(|k| 4 * k - 18)
+            .map(|x| {
+                let (l, r) = (x - 1, x + 1);
+                format!(
+                    "[[obstacle]]\nname = 'tooth{x}'\nvertices = [[{l}, 0], [{r}, 0], [{x}, 2]]\n"
+                )
+            })
+            .collect();
+        let text = format!(
+            "[scene]\nname = 'wall and teeth'\n\
+             [[obstacle]]\nname = 'wall'\nvertices = [[-15, 25], [-14, 25], [-14, 35], [-15, 35]]\n{teeth}\
+             [[pawl]]\nname = 'struck'\nhinge = [-20, 30]\nvertices = [[-20, 30], [-22, 31], [-22, 29]]\n\
+             [[pawl]]\nname = 'rides'\nhinge = [-20, 5]\nvertices = [[-20, 5], [-21, 5], [-23, 1]]\n\
+             [[motion]]\nvelocity = [1, 0]\nduration = 40\n"
+        );
+        read_scene("teeth.toml", &text).unwrap().into_scene()
+    }
+
+    /// The pawls by name, each with its events and segments.
+    fn told(t: &Trajectory) -> Vec<(&str, &[Event], &[Segment])> {
+        let mut all: Vec<_> = t
+            .pawls
+            .iter()
+            .map(|p| (&*p.name, &p.events[..], &p.segments[..]))
+            .collect();
+        all.sort_by_key(|p| p.0);
+        all
+    }
+
+    /// The pawls after the one that ends the plan are followed no further than that, by either method; what is
+    /// told of them is the same as where they come first and are followed all the way.
+    #[test]
+    fn pawls_stop_where_another_one_has_ended_the_plan() {
+        let scene = wall_and_teeth();
+        let mut turned = scene.clone();
+        turned.pawls.reverse();
+        let mut all = Vec::new();
+        for method in [Method::Naive, Method::Sweep] {
+            let options = Options {
+                method,
+                ..Options::default()
+            };
+            let [short, long] = [&scene, &turned].map(|s| simulate(s, &options).unwrap());
+            assert_eq!(short.outcome.kind, OutcomeKind::Jammed);
+            assert!(short.outcome.time.cmp_rat(&Rat::from(5)).is_eq());
+            assert_eq!(told(&short), told(&long));
+            assert_eq!(short.pawls[1].events.len(), 1);
+            assert_eq!(short.pawls[1].segments.len(), 2);
+            let [few, many] = [&short, &long].map(|t| t.ledger.counts.asked());
+            assert!(few < many, "{method:?}: {few}, {many} all the way");
+            all.push(short);
+        }
+        assert_eq!(told(&all[0]), told(&all[1]));
+    }
+
+    /// An arm (3, −4) that starts upright, tan(θ/2) = 3, leans on a corner at (0, 3) and is turned to the left by
+    /// it. It lies along (−3, 4), θ = π, when the corner is at (−9/4, 3), t = 9/4. The plan is over before, then,
+    /// or later, and the turns are those of that instant whichever pawl comes first.
+    #[test]
+    fn the_turns_of_a_segment_are_those_where_the_plan_ends() {
+        for (end, turns) in [("1", 0), ("9/4", 0), ("3", 1)] {
+            let text = format!(
+                "[scene]\nname = 'past the back'\n\
+                 [[obstacle]]\nname = 'face'\nvertices = [[0, 3], [5, 3], [5, 20], [0, 20]]\n\
+                 [[obstacle]]\nname = 'wall'\nvertices = [['{end}', 95], [9, 95], [9, 105], ['{end}', 105]]\n\
+                 [[pawl]]\nname = 'turns'\nhinge = [0, 0]\nstart = 3\n\
+                 vertices = [[0, 0], ['608/1000', '-794/1000'], [3, -4]]\n\
+                 [[pawl]]\nname = 'struck'\nhinge = [0, 100]\nvertices = [[0, 100], [-2, 101], [-2, 99]]\n\
+                 [[motion]]\nvelocity = [1, 0]\nduration = 40\n"
+            );
+            let scene = read_scene("back.toml", &text).unwrap().into_scene();
+            let mut turned = scene.clone();
+            turned.pawls.reverse();
+            for method in [Method::Naive, Method::Sweep] {
+                let options = Options {
+                    method,
+                    ..Options::default()
+                };
+                let [first, last] = [&scene, &turned].map(|s| simulate(s, &options).unwrap());
+                assert_eq!(first.pawls[0].segments[0].winding, [0, turns], "{end}");
+                assert_eq!(told(&first), told(&last), "{end} {method:?}");
+            }
+        }
     }
 }

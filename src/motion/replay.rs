@@ -100,7 +100,7 @@ duration = "12"
         assert!(whole.events.len() > 2, "something happens");
         let naive = seen.run_from(file.scene(), &start, Method::Naive);
         assert_eq!(naive.faces, Default::default());
-        let told = |r: &Run| format!("{:?} {:?}", r.events, r.segments);
+        let told = |r: &Run| (r.events.clone(), r.segments.clone());
         let whole = seen.free.clone().unwrap();
         let mut abandoned = 0;
         for arc in 0..seen.slice.arcs().len() as u32 {

@@ -183,7 +183,7 @@ pub struct RootContact {
 }
 
 /// Something that happened to one pawl.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Event<K: Kernel = Filtered> {
     /// What.
     pub kind: EventKind,
@@ -202,7 +202,7 @@ pub struct Event<K: Kernel = Filtered> {
 }
 
 /// A stretch of motion under one constraint, or under none.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Segment<K: Kernel = Filtered> {
     /// In which phase.
     pub phase: usize,
@@ -216,8 +216,29 @@ pub struct Segment<K: Kernel = Filtered> {
     pub sliding: Option<Sliding<K>>,
 }
 
+impl<K: Kernel> Segment<K> {
+    /// What of it comes before an instant after its begin.
+    pub(crate) fn until(mut self, cut: &K::Time) -> Segment<K> {
+        if self.to <= *cut {
+            return self;
+        }
+        let [from, to] = self.winding;
+        if let Some(t) = self.sliding.as_ref().and_then(Sliding::upright)
+            && from != to
+        {
+            self.winding[1] = match cut.cmp_num(&K::Num::from_rat(&t)) {
+                Ordering::Less => from,
+                Ordering::Equal => from.min(to),
+                Ordering::Greater => to,
+            };
+        }
+        self.to = cut.clone();
+        self
+    }
+}
+
 /// The constraint of a sliding segment.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sliding<K: Kernel = Filtered> {
     /// The first contact that holds throughout.
     pub contact: Contact,
@@ -229,6 +250,17 @@ pub struct Sliding<K: Kernel = Filtered> {
     pub q: [K::Coef; 3],
     /// The sign of the radical in DP eq. 26.
     pub branch: i32,
+}
+
+impl<K: Kernel> Sliding<K> {
+    /// When the curve passes θ = π, where the turns change: u = ∞ there, so the leading coefficients cancel.
+    /// None if it never does.
+    fn upright(&self) -> Option<Rat> {
+        let rat = |c: &K::Coef| Rat::from(K::publish(c));
+        let (p, q) = (self.p.each_ref().map(rat), self.q.each_ref().map(rat));
+        let k = (0..3).rev().find(|&k| !p[k].is_zero() || !q[k].is_zero())?;
+        (!q[k].is_zero()).then(|| -(&p[k] / &q[k]))
+    }
 }
 
 /// How one way on from a bifurcation begins.

@@ -102,23 +102,47 @@ impl<'a> Conversion<'a> {
         c
     }
 
-    /// The scene, if every part of it could be read, with errors and warnings.
-    pub(crate) fn finish(self) -> (Option<Scene>, Vec<Diagnostic>, Vec<Diagnostic>) {
-        let scene = self.errors.is_empty().then_some(()).and_then(|()| {
-            Some(Scene {
-                name: self.name?,
-                friction: self.friction,
-                obstacles: self.obstacles.into_iter().collect::<Option<_>>()?,
-                root: match self.root {
-                    Some(root) => Some(root?),
-                    None => None,
-                },
-                pawls: self.pawls.into_iter().collect::<Option<_>>()?,
-                motions: self.motions.into_iter().collect::<Option<_>>()?,
-                classify: self.classify,
-            })
-        });
-        (scene, self.errors, self.warnings)
+    /// The scene with its warnings, if nothing is wrong with it.
+    ///
+    /// # Errors
+    /// As [`Conversion::settle`].
+    pub(crate) fn finish(mut self) -> Result<(Scene, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let scene = self.whole();
+        self.settle(scene)
+    }
+
+    /// The scene, if every part of it could be read; takes the parts.
+    fn whole(&mut self) -> Option<Scene> {
+        Some(Scene {
+            name: self.name.take()?,
+            friction: self.friction.take(),
+            obstacles: self.obstacles.drain(..).collect::<Option<_>>()?,
+            root: match self.root.take() {
+                Some(root) => Some(root?),
+                None => None,
+            },
+            pawls: self.pawls.drain(..).collect::<Option<_>>()?,
+            motions: self.motions.drain(..).collect::<Option<_>>()?,
+            classify: self.classify.take(),
+        })
+    }
+
+    /// What was made of the file, with the warnings.
+    ///
+    /// # Errors
+    /// What is wrong with it, even where something could be made. Both lists are in the order of
+    /// the file.
+    pub(crate) fn settle<T>(
+        self,
+        made: Option<T>,
+    ) -> Result<(T, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let (mut errors, mut warnings) = (self.errors, self.warnings);
+        errors.sort_by_key(Diagnostic::span);
+        warnings.sort_by_key(Diagnostic::span);
+        match made {
+            Some(made) if errors.is_empty() => Ok((made, warnings)),
+            _ => Err(errors),
+        }
     }
 
     /// Notes an error at a place, unless there are [`MAX_ERRORS`] already.

@@ -54,11 +54,11 @@ pub use convert::MAX_ERRORS;
 pub(crate) use convert::{Conversion, Tables, clip};
 pub use diagnostic::{CODES, Diagnostic, Rendering, STRUCTURE_CODES, SceneError, Severity};
 pub use overrides::apply_overrides;
-pub(crate) use overrides::apply_overrides_at;
 pub use read::{
     MAX_FILE_BYTES, MAX_TOTAL_BITS, MAX_VERTICES, SceneFile, read_scene, read_scene_bytes,
     read_scene_with,
 };
+pub(crate) use read::{text_of, tree_of};
 pub(crate) use schema::{Number, Point, Ring, without_null};
 pub use schema::{SceneDocument, scene_schema};
 pub use source::{Source, Sources, Span};

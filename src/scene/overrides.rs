@@ -26,7 +26,7 @@ pub fn apply_overrides(
 }
 
 /// [`apply_overrides`] that adds the texts of the overrides to the given sources.
-pub(crate) fn apply_overrides_at(
+pub(super) fn apply_overrides_at(
     tree: &mut Node,
     sources: &mut Sources,
     overrides: &[(&str, &str)],

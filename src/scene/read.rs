@@ -1,4 +1,5 @@
-//! The way in: a name and a text become a scene, or the list of what is wrong.
+//! The way in: a name and a text become a scene, or the list of what is wrong. Structures come in
+//! by the same door (`text_of`, `tree_of`).
 
 use super::convert::Conversion;
 use super::diagnostic::Diagnostic;
@@ -102,30 +103,7 @@ pub fn read_scene_bytes(
     bytes: &[u8],
     overrides: &[(&str, &str)],
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    // Refused by size first, so that no time goes into decoding what is not read.
-    if bytes.len() > MAX_FILE_BYTES {
-        return Err(vec![too_large(name, bytes.len())]);
-    }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => read_scene_with(name, text, overrides),
-        Err(error) => {
-            let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
-            let mut sources = Sources::new();
-            let index = sources.add(Source::new(name, &good));
-            let end = sources.get(index).text().len();
-            let span = Span {
-                source: index,
-                start: end,
-                end,
-            };
-            let byte = bytes[error.valid_up_to()];
-            Err(vec![
-                Diagnostic::error(&sources, span, "not-utf8")
-                    .message(format!("the byte 0x{byte:02x} here is not UTF-8 text"))
-                    .help("save the file as UTF-8"),
-            ])
-        }
-    }
+    read_scene_with(name, text_of("scene", name, bytes)?, overrides)
 }
 
 /// [`read_scene`] with values replaced first: each override is a dotted path of keys and indices
@@ -138,35 +116,79 @@ pub fn read_scene_with(
     text: &str,
     overrides: &[(&str, &str)],
 ) -> Result<SceneFile, Vec<Diagnostic>> {
-    if text.len() > MAX_FILE_BYTES {
-        return Err(vec![too_large(name, text.len())]);
-    }
+    let (tree, sources) = tree_of("scene", name, text, overrides)?;
+    let mut conversion = Conversion::of(&tree, &sources);
+    validate::scene(&mut conversion);
+    let (scene, warnings) = conversion.finish()?;
+    Ok(SceneFile {
+        scene,
+        tree,
+        sources,
+        warnings,
+    })
+}
+
+/// The text that bytes are. `noun` is what the file is to describe.
+///
+/// # Errors
+/// `too-large`; `not-utf8` at the first byte that is none.
+pub(crate) fn text_of<'a>(
+    noun: &str,
+    name: &str,
+    bytes: &'a [u8],
+) -> Result<&'a str, Vec<Diagnostic>> {
+    // Refused by size first, so that no time goes into decoding what is not read.
+    within_size(noun, name, bytes)?;
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
+        let mut sources = Sources::new();
+        let index = sources.add(Source::new(name, &good));
+        let end = sources.get(index).text().len();
+        let span = Span {
+            source: index,
+            start: end,
+            end,
+        };
+        let byte = bytes[error.valid_up_to()];
+        vec![
+            Diagnostic::error(&sources, span, "not-utf8")
+                .message(format!("the byte 0x{byte:02x} here is not UTF-8 text"))
+                .help("save the file as UTF-8"),
+        ]
+    })
+}
+
+/// The tree that a text is, overrides applied, and the texts that its places are in. `noun` is
+/// what the file is to describe.
+///
+/// # Errors
+/// `too-large`, what is no TOML or JSON, and overrides that cannot be applied.
+pub(crate) fn tree_of(
+    noun: &str,
+    name: &str,
+    text: &str,
+    overrides: &[(&str, &str)],
+) -> Result<(Node, Sources), Vec<Diagnostic>> {
+    within_size(noun, name, text.as_bytes())?;
     let mut sources = Sources::new();
     let index = sources.add(Source::new(name, text));
     let mut tree = read_tree(&sources, index, Notation::of(name, text))?;
     apply_overrides_at(&mut tree, &mut sources, overrides)?;
-    let mut conversion = Conversion::of(&tree, &sources);
-    validate::scene(&mut conversion);
-    let (scene, mut diagnostics, mut warnings) = conversion.finish();
-    diagnostics.sort_by_key(Diagnostic::span);
-    warnings.sort_by_key(Diagnostic::span);
-    match scene {
-        Some(scene) if diagnostics.is_empty() => Ok(SceneFile {
-            scene,
-            tree,
-            sources,
-            warnings,
-        }),
-        _ => Err(diagnostics),
-    }
+    Ok((tree, sources))
 }
 
-fn too_large(name: &str, bytes: usize) -> Diagnostic {
+fn within_size(noun: &str, name: &str, bytes: &[u8]) -> Result<(), Vec<Diagnostic>> {
+    let size = bytes.len();
+    if size <= MAX_FILE_BYTES {
+        return Ok(());
+    }
     let mut sources = Sources::new();
     sources.add(Source::new(name, ""));
-    Diagnostic::error(&sources, Span::default(), "too-large")
-        .message(format!(
-            "the file has {bytes} bytes, more than the {MAX_FILE_BYTES} that are read"
-        ))
-        .help("split the scene")
+    Err(vec![
+        Diagnostic::error(&sources, Span::default(), "too-large")
+            .message(format!(
+                "the file has {size} bytes, more than the {MAX_FILE_BYTES} that are read"
+            ))
+            .help(format!("split the {noun}")),
+    ])
 }

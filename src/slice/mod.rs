@@ -14,6 +14,7 @@
 mod annotate;
 mod arc;
 mod assemble;
+mod breaks;
 mod build;
 mod free;
 mod names;

@@ -6,9 +6,10 @@
 //! worked out at once. Both ways give the same arcs; nothing depends on which was gone.
 
 use super::arc::{Arc, ArcId, Curve, CurveId, Exact};
+use super::breaks::Truth;
 use super::build::Builder;
 use super::predicates::CrossCache;
-use super::scout::{self, Function, Seen, Truth};
+use super::scout::{self, Function, Seen};
 use crate::contact::{Chart, Frame, ObstacleShape, Pair, Patch, PawlShape, pairs_within};
 use crate::kernel::{Filtered, Kernel, Position};
 use crate::number::{Interval, Scalar};

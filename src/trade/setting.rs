@@ -64,10 +64,6 @@ impl Setting {
             Setting::Stepping(n) => format!("stepping {n}"),
         }
     }
-    /// Whether it is the reference.
-    pub fn is_reference(&self) -> bool {
-        *self == Setting::Kernel(Arithmetic::Filtered)
-    }
     /// Simulates a scene; gives up after `limit`.
     pub fn run(&self, scene: &Scene, limit: Duration) -> Outcome {
         let memory = Peak::start();

@@ -11,8 +11,7 @@ use super::types::{Body, Hold, StepRules, Structure};
 use crate::geometry::{Polygon, Vec2, interiors_intersect};
 use crate::number::Rat;
 use crate::scene::{
-    Conversion, Diagnostic, Kind, MAX_FILE_BYTES, Node, Notation, Source, Sources, Span, Tables,
-    apply_overrides_at, clip, explain_defects, read_tree,
+    Conversion, Diagnostic, Kind, Node, Sources, Tables, clip, explain_defects, text_of, tree_of,
 };
 use std::collections::HashMap;
 
@@ -109,13 +108,8 @@ pub enum Guise {
 ///
 /// Cost: reads the text once.
 pub fn guise(name: &str, bytes: &[u8]) -> Option<Guise> {
-    let text = std::str::from_utf8(bytes).ok()?;
-    if bytes.len() > MAX_FILE_BYTES {
-        return None;
-    }
-    let mut sources = Sources::new();
-    let index = sources.add(Source::new(name, text));
-    let tree = read_tree(&sources, index, Notation::of(name, text)).ok()?;
+    let text = text_of("file", name, bytes).ok()?;
+    let (tree, _) = tree_of("file", name, text, &[]).ok()?;
     let has = |keys: &[&str]| keys.iter().any(|k| tree.get(k).is_some());
     if has(&["schema"]) {
         Some(Guise::Result)
@@ -144,39 +138,8 @@ pub fn read_structure(
     bytes: &[u8],
     overrides: &[(&str, &str)],
 ) -> Result<StructureFile, Vec<Diagnostic>> {
-    let mut sources = Sources::new();
-    if bytes.len() > MAX_FILE_BYTES {
-        sources.add(Source::new(name, ""));
-        return Err(vec![
-            Diagnostic::error(&sources, Span::default(), "too-large")
-                .message(format!(
-                    "the file has {} bytes, more than the {MAX_FILE_BYTES} that are read",
-                    bytes.len()
-                ))
-                .help("split the structure"),
-        ]);
-    }
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(error) => {
-            let good = String::from_utf8_lossy(&bytes[..error.valid_up_to()]);
-            let index = sources.add(Source::new(name, &good));
-            let end = sources.get(index).text().len();
-            let span = Span {
-                source: index,
-                start: end,
-                end,
-            };
-            return Err(vec![
-                Diagnostic::error(&sources, span, "not-utf8")
-                    .message("the text here is not UTF-8")
-                    .help("save the file as UTF-8"),
-            ]);
-        }
-    };
-    let index = sources.add(Source::new(name, text));
-    let mut tree = read_tree(&sources, index, Notation::of(name, text))?;
-    apply_overrides_at(&mut tree, &mut sources, overrides)?;
+    let text = text_of("structure", name, bytes)?;
+    let (tree, sources) = tree_of("structure", name, text, overrides)?;
     let mut c = Conversion::bare("structure", TABLES, &tree, &sources);
     let structure = convert(&mut c);
     if let Some(structure) = &structure
@@ -184,18 +147,13 @@ pub fn read_structure(
     {
         starts(&mut c, structure);
     }
-    let (mut errors, mut warnings) = (c.errors, c.warnings);
-    errors.sort_by_key(Diagnostic::span);
-    warnings.sort_by_key(Diagnostic::span);
-    match structure {
-        Some(structure) if errors.is_empty() => Ok(StructureFile {
-            structure,
-            tree,
-            sources,
-            warnings,
-        }),
-        _ => Err(errors),
-    }
+    let (structure, warnings) = c.settle(structure)?;
+    Ok(StructureFile {
+        structure,
+        tree,
+        sources,
+        warnings,
+    })
 }
 
 /// Names of bodies to indices.

@@ -6,8 +6,8 @@
 //! set count. A negative upper bound on a column whose lower bound was not given makes that
 //! lower bound −∞. An upper bound of exactly 10³⁰ and a lower one of exactly −10³⁰ are infinite,
 //! as writers of this format have meant it since its time and readers take it (Clp, QSopt,
-//! and those whose infinity begins at 10²⁰); any other number is that number. A right-hand side of the objective is remembered but not added: see
-//! [`Model::ignored_rhs`].
+//! and those whose infinity begins at 10²⁰); any other number is that number. A right-hand side of
+//! the objective is remembered but not added: see [`Model::ignored_rhs`].
 
 use super::{At, clip, number};
 use crate::lp::model::{Column, Model, Range, Row};
@@ -35,8 +35,8 @@ enum Section {
 enum RowKind {
     Objective,
     Ignored,
-    /// Index among the model's rows and its sense.
-    Constraint(u32, u8),
+    /// Index among the model's rows.
+    Constraint(u32),
 }
 
 /// A word and the byte at which it starts.
@@ -143,14 +143,9 @@ impl<'a> Reader<'a> {
         };
         let early = |s: Section| matches!(s, Section::Start | Section::Name | Section::ObjSense);
         let ok = match next {
-            Section::Name | Section::ObjSense => early(before),
-            Section::Rows => early(before),
+            Section::Name | Section::ObjSense | Section::Rows => early(before),
             Section::Columns => before == Section::Rows,
-            Section::Rhs => matches!(before, Section::Columns),
-            Section::Ranges | Section::Bounds => matches!(
-                before,
-                Section::Columns | Section::Rhs | Section::Ranges | Section::Bounds
-            ),
+            Section::Rhs => before == Section::Columns,
             _ => matches!(
                 before,
                 Section::Columns | Section::Rhs | Section::Ranges | Section::Bounds
@@ -210,7 +205,7 @@ impl<'a> Reader<'a> {
                 self.rhs.push(None);
                 self.ranges.push(None);
                 self.stamp.push(usize::MAX);
-                RowKind::Constraint(index, s.as_bytes()[0])
+                RowKind::Constraint(index)
             }
             _ => {
                 return Err((
@@ -293,7 +288,7 @@ impl<'a> Reader<'a> {
                     self.model.columns[index].cost = value;
                     repeated
                 }
-                RowKind::Constraint(r, _) => {
+                RowKind::Constraint(r) => {
                     let repeated = self.stamp[r as usize] == index;
                     self.stamp[r as usize] = index;
                     if !value.is_zero() {
@@ -347,8 +342,8 @@ impl<'a> Reader<'a> {
                 .ok_or_else(|| (*row_at, format!("unknown row `{}`", clip(row))))?;
             let value = number(value).map_err(|m| (*value_at, m))?;
             let slot = match kind {
-                RowKind::Constraint(r, _) if which == 0 => &mut self.rhs[r as usize],
-                RowKind::Constraint(r, _) => &mut self.ranges[r as usize],
+                RowKind::Constraint(r) if which == 0 => &mut self.rhs[r as usize],
+                RowKind::Constraint(r) => &mut self.ranges[r as usize],
                 RowKind::Objective if which == 0 => &mut self.model.ignored_rhs,
                 _ => continue,
             };

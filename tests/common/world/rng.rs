@@ -1,5 +1,7 @@
 //! SplitMix64: a seed is a scene, on every machine.
 
+#![allow(dead_code, unreachable_pub)]
+
 use snapfit::number::Rat;
 
 pub struct Rng(u64);
@@ -18,6 +20,10 @@ impl Rng {
     /// lo ≤ result ≤ hi.
     pub fn range(&mut self, lo: i64, hi: i64) -> i64 {
         lo + (self.next() % (hi - lo + 1) as u64) as i64
+    }
+    /// 0 ≤ result < n.
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
     }
     pub fn chance(&mut self, percent: u64) -> bool {
         self.next() % 100 < percent
