@@ -196,7 +196,7 @@ impl Tracer<'_> {
             }
         } else {
             let mid = match crowded {
-                None if depth % LOOK == 0 && depth > 0 => {
+                None if depth.is_multiple_of(LOOK) && depth > 0 => {
                     self.beside_crowd(item, (from, to), &near).unwrap_or(mid)
                 }
                 _ => mid,
