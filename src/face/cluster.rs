@@ -25,6 +25,15 @@ impl Core {
     pub(super) fn range(&self) -> (f64, f64) {
         (self.middle - self.half, self.middle + self.half)
     }
+
+    /// The part of the axis just outside of which something may be asked again.
+    pub(super) fn crowded(&self) -> (f64, f64) {
+        let (from, to) = self.range();
+        (
+            from.next_down().next_down().next_down(),
+            to.next_up().next_up().next_up(),
+        )
+    }
 }
 
 /// The members of a cluster, seen from a frame in it.
@@ -44,7 +53,7 @@ struct Member {
     curve: CurveId,
     /// Its height at the frame, above a curve that all are compared with.
     height: Approx,
-    /// Its slopes all over the core, and next to the frame.
+    /// Its slopes all over the crowded part, and next to the frame.
     slopes: Approx,
     near: Approx,
     /// An enclosure of its range.
@@ -89,7 +98,7 @@ impl Cluster {
     ) -> Cluster {
         let frame = k.frame_of(x);
         let (lo, hi) = k.frame_range(frame);
-        let (a, b) = core.range();
+        let (a, b) = core.crowded();
         let whole = Approx::between(a.min(lo), b.max(hi));
         let next = Approx::between(lo.next_down(), hi.next_up());
         members.sort_unstable();
@@ -131,7 +140,7 @@ impl Member {
     fn meets(&self, o: &Member, reach: f64) -> Option<(f64, f64)> {
         let slopes = self.slopes - o.slopes;
         let steep = slopes.v.abs() - slopes.e;
-        // One of them is steeper all over the core: they meet once at most.
+        // One of them is steeper all over: they meet once at most.
         if !(steep > 0.0) {
             return None;
         }

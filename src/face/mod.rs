@@ -21,6 +21,7 @@ mod cluster;
 mod compare;
 mod cylinder;
 mod frames;
+mod gap;
 mod hash;
 mod hulls;
 mod island;

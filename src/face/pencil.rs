@@ -131,12 +131,7 @@ impl Pencil {
 
     /// The part of the axis just outside of which something may be asked again.
     pub(super) fn crowded(&self) -> Option<(f64, f64)> {
-        let core = self.chart.core?;
-        let (from, to) = core.range();
-        Some((
-            from.next_down().next_down().next_down(),
-            to.next_up().next_up().next_up(),
-        ))
+        Some(self.chart.core?.crowded())
     }
 
     /// Calls `found` with the members that may meet a curve over [a, b] beside the point.
