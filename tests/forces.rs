@@ -466,37 +466,62 @@ fn work_is_finite_from_the_boundary_on() {
     assert!((middle(work) - sum).abs() <= 0.01 * sum, "{sum} {work:?}");
 }
 
-/// Two pawls that both begin on the ray, as one alone does: the root's loads are their sums, as
-/// narrow. Twins give twice the one, a twin of thrice the stiffness four times.
+/// Arms that come down on a floor, each by its hinge's height, its side and its stiffness. A tip is
+/// (±3, −4) from its hinge and lands 4 below it; with μ = 3/4 that is on the cone's ray, from where
+/// it slides outwards.
+fn arms(each: &[(i64, i64, i64)]) -> Scene {
+    let pawl = |(k, (height, side, stiffness)): (usize, &(i64, i64, i64))| {
+        let at = |x: i64, y: i64| format!("[{}, {}]", 20 * k as i64 + side * x, height + y);
+        let (hinge, tip, back) = (at(0, 0), at(3, -4), at(4, -1));
+        format!(
+            "[[pawl]]\nname = 'arm{k}'\nhinge = {hinge}\nvertices = [{hinge}, {tip}, {back}]\n\
+             stiffness = {stiffness}\n"
+        )
+    };
+    let pawls: String = each.iter().enumerate().map(pawl).collect();
+    let text = format!(
+        "[scene]\nname = 'arms'\nfriction = '3/4'\n\
+         [[obstacle]]\nname = 'floor'\nvertices = [[-90, -1], [90, -1], [90, 0], [-90, 0]]\n\
+         [root]\nvertices = [[0, 20], [1, 20], [0, 21]]\n{pawls}\
+         [[motion]]\nvelocity = [0, -1]\nduration = '7/2'\n"
+    );
+    read_scene("arms.toml", &text).unwrap().into_scene()
+}
+
+/// Pawls that begin on the ray, at once or one while the other slides already: the root's resistance
+/// at the end, where each is at its highest, is the sum of what they give alone, as narrow. (The
+/// force leans by 3 : 4, so that no bound by its size is so narrow.)
 #[test]
 fn pawls_on_the_ray_together_add_up() {
-    let alone = bayer(&Rat::frac(3, 2), &Rat::frac(1, 2), &Rat::frac(2, 3));
     let wish = Wish {
         root: true,
         ..Wish::default()
     };
-    let peak = |s: &Scene| {
-        let doc = forces(s, &wish, &Ask::default()).unwrap();
+    let peak = |each: &[(i64, i64, i64)]| {
+        let doc = forces(&arms(each), &wish, &Ask::default()).unwrap();
         let peak = &doc.root.as_ref().unwrap().phases[0].peak;
         ends(&peak.as_ref().unwrap().resistance).expect("bounded")
     };
-    let [lo, hi] = peak(&alone);
-    assert!(lo.sign() > 0);
-    for times in [1, 3] {
-        let mut s = alone.clone();
-        let mut twin = s.pawls[0].clone();
-        twin.name = "twin".to_owned();
-        let stiffness = twin.stiffness.take().expect("a spring");
-        twin.stiffness = Some(&stiffness * &Rat::from(times));
-        s.pawls.push(twin);
-        let [low, high] = peak(&s);
-        let sum = Rat::from(1 + times);
-        assert!(
-            low <= &hi * &sum && high >= &lo * &sum,
-            "{times}: {low} {high}"
-        );
-        let narrow = &high * &Rat::frac(1, 10_000);
-        assert!(&high - &low <= narrow, "{times}: {low} {high}");
+    let narrow = |[lo, hi]: &[Rat; 2]| {
+        assert!(lo.sign() > 0);
+        assert!(hi - lo <= hi * &Rat::frac(1, 10_000), "{lo} {hi}");
+    };
+    let one = (6, 1, 5);
+    let first = peak(&[one]);
+    narrow(&first);
+    for other in [
+        one,
+        (6, 1, 15),
+        (6, -1, 5),
+        (6, -1, 2),
+        (7, 1, 5),
+        (7, -1, 3),
+    ] {
+        let second = peak(&[other]);
+        let both = peak(&[one, other]);
+        narrow(&both);
+        let sum = [0, 1].map(|k| &first[k] + &second[k]);
+        assert!(both[0] <= sum[1] && sum[0] <= both[1], "{other:?}");
     }
 }
 
