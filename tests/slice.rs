@@ -15,7 +15,7 @@ mod world;
 use clear::{clear, solids};
 use common::count;
 use snapfit::contact::Chart;
-use snapfit::motion::{Method, Options, Seen, simulate, slices};
+use snapfit::motion::{Arithmetic, Method, Options, Seen, simulate, slices};
 use snapfit::number::Rat;
 use snapfit::report::json::{Provenance, ResultDocument};
 use snapfit::scene::Scene;
@@ -56,9 +56,10 @@ fn positions_in_doubles_hold_the_exact_ones() {
 }
 
 /// The result of a method as text, without what it cost, and how many runs were swept.
-fn told(scene: &Scene, method: Method) -> (String, u64) {
+fn told(scene: &Scene, method: Method, arithmetic: Arithmetic) -> (String, u64) {
     let options = Options {
         method,
+        arithmetic,
         ..Options::default()
     };
     let t = simulate(scene, &options).unwrap();
@@ -77,17 +78,26 @@ fn told(scene: &Scene, method: Method) -> (String, u64) {
 #[test]
 fn the_sweep_tells_what_the_scan_tells() {
     let n = count(100_000) as u64;
-    let mut swept = 0;
+    let (mut swept, mut reference) = (0, 0);
     let mut wrong = Vec::new();
     for seed in (0..n).map(|k| 7_000_000 + world::first_seed() + k) {
         let scene = random_scene(&Recipe::draw(seed));
-        let both =
-            std::panic::catch_unwind(|| (told(&scene, Method::Naive), told(&scene, Method::Sweep)));
-        match both {
-            Ok((naive, sweep)) => {
-                swept += sweep.1;
-                if naive.0 != sweep.0 {
-                    let first = naive.0.lines().zip(sweep.0.lines()).find(|(a, b)| a != b);
+        let all = std::panic::catch_unwind(|| {
+            let filtered = |method| told(&scene, method, Arithmetic::Filtered);
+            let naive = filtered(Method::Naive).0;
+            let mut sweeps = vec![filtered(Method::Sweep)];
+            // The reference is slow.
+            if seed % 10 == 0 {
+                sweeps.push(told(&scene, Method::Sweep, Arithmetic::Exact));
+            }
+            (naive, sweeps)
+        });
+        match all {
+            Ok((naive, sweeps)) => {
+                swept += sweeps[0].1;
+                reference += sweeps.get(1).map_or(0, |s| s.1);
+                for (sweep, _) in sweeps.iter().filter(|s| s.0 != naive) {
+                    let first = naive.lines().zip(sweep.lines()).find(|(a, b)| a != b);
                     let toml = scene.to_toml();
                     eprintln!("seed {seed} differs: {first:?}\n{toml}");
                     wrong.push(format!("seed {seed} differs\n{toml}"));
@@ -100,14 +110,14 @@ fn the_sweep_tells_what_the_scan_tells() {
             }
         }
     }
-    eprintln!("{n} scenes, {swept} runs swept");
+    eprintln!("{n} scenes, {swept} runs swept, {reference} by the reference");
     assert!(
         wrong.is_empty(),
         "{} of {n}: {}",
         wrong.len(),
         wrong[..wrong.len().min(3)].join("\n")
     );
-    assert!(swept >= n, "the sweep ran");
+    assert!(swept >= n && 10 * reference >= n, "the sweep ran");
 }
 
 /// Every slice of random scenes that has an F.

@@ -170,13 +170,6 @@ fn objective_is(claim: &Claim, value: &Rat) -> Result<(), Rejection> {
     }
 }
 
-pub(super) fn lcm(a: &Int, b: &Int) -> Int {
-    if *b == Int::one() || a == b {
-        return a.clone();
-    }
-    a * &b.div_exact(&a.gcd(b))
-}
-
 /// Components as integers over one positive denominator.
 fn integers(v: &Vector, length: usize) -> Result<(Vec<Int>, Int), Rejection> {
     if v.denominator.sign() <= 0 {
@@ -185,7 +178,7 @@ fn integers(v: &Vector, length: usize) -> Result<(Vec<Int>, Int), Rejection> {
     let common = v
         .numerators
         .iter()
-        .fold(Int::one(), |l, (_, n)| lcm(&l, n.denom()));
+        .fold(Int::one(), |l, (_, n)| l.lcm(n.denom()));
     let mut out = vec![Int::zero(); length];
     let mut last = None;
     for (i, n) in &v.numerators {
@@ -240,7 +233,7 @@ impl Point {
         for c in &model.columns {
             for (i, a) in &c.entries {
                 let f = &mut factor[*i as usize];
-                *f = lcm(f, a.denom());
+                *f = f.lcm(a.denom());
             }
         }
         let mut activity = vec![Int::zero(); model.rows.len()];
@@ -286,7 +279,7 @@ impl Point {
     /// c·x without the constant, as a fraction.
     fn slope(&self, model: &Model) -> Rat {
         let costs = model.columns.iter().map(|c| &c.cost);
-        let scale = costs.fold(Int::one(), |l, c| lcm(&l, c.denom()));
+        let scale = costs.fold(Int::one(), |l, c| l.lcm(c.denom()));
         let mut sum = Int::zero();
         for (c, x) in model.columns.iter().zip(&self.x) {
             if !c.cost.is_zero() && !x.is_zero() {
@@ -342,7 +335,7 @@ impl Prices {
         let c = &model.columns[j];
         let mut scale = c.cost.denom().clone();
         for (_, a) in &c.entries {
-            scale = lcm(&scale, a.denom());
+            scale = scale.lcm(a.denom());
         }
         let mut sum = if with_cost && !c.cost.is_zero() {
             c.cost.numer() * &scale.div_exact(c.cost.denom()) * self.denominator.clone()

@@ -13,7 +13,7 @@
 //! Every step is plain arithmetic on machine words modulo a 31-bit prime fixed at compile time. A
 //! bad order, place or denominator can only lead to rejection.
 
-use super::lp::{Rejection, lcm, reject};
+use super::lp::{Rejection, reject};
 use super::lp_digits::{Digits, Line, Trouble, no};
 use crate::lp::{Model, Place};
 use crate::number::{Int, Rat};
@@ -77,7 +77,7 @@ impl<'a> Check<'a> {
         for c in &model.columns {
             for (i, a) in &c.entries {
                 let r = &mut row_scale[*i as usize];
-                *r = lcm(r, a.denom());
+                *r = r.lcm(a.denom());
             }
         }
         let mut rows: Vec<Line> = vec![Vec::new(); m];
@@ -104,15 +104,15 @@ impl<'a> Check<'a> {
         let mut bound_scale = Int::one();
         let ends = |r: &'a crate::lp::Range| [&r.lower, &r.upper].into_iter().flatten();
         for b in model.columns.iter().flat_map(|c| ends(&c.range)) {
-            bound_scale = lcm(&bound_scale, b.denom());
+            bound_scale = bound_scale.lcm(b.denom());
         }
         for (r, k) in model.rows.iter().zip(&row_scale) {
             for b in ends(&r.range) {
-                bound_scale = lcm(&bound_scale, (b * &Rat::from(k.clone())).denom());
+                bound_scale = bound_scale.lcm((b * &Rat::from(k.clone())).denom());
             }
         }
         let costs = model.columns.iter().map(|c| &c.cost);
-        let cost_scale = costs.fold(Int::one(), |l, c| lcm(&l, c.denom()));
+        let cost_scale = costs.fold(Int::one(), |l, c| l.lcm(c.denom()));
         let mut check = Check {
             model,
             evidence,

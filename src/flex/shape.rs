@@ -91,14 +91,6 @@ pub(crate) fn reference(body: &Body) -> Vec2 {
     }
 }
 
-fn lcm(a: &Int, b: &Int) -> Int {
-    if b.is_one() || a == b {
-        return a.clone();
-    }
-    let g = a.gcd(b);
-    a * &b.div_exact(&g)
-}
-
 /// A vector without the common factor of its parts.
 pub(crate) fn primitive(v: IntVec) -> IntVec {
     let g = v[0].gcd(&v[1]);
@@ -122,7 +114,7 @@ pub(crate) fn doubles(p: &Vec2) -> [f64; 2] {
 pub(crate) fn integral<'a>(points: impl Iterator<Item = &'a Vec2> + Clone) -> (Vec<IntVec>, Int) {
     let h = points
         .clone()
-        .fold(Int::one(), |h, p| lcm(&lcm(&h, p.x.denom()), p.y.denom()));
+        .fold(Int::one(), |h, p| h.lcm(p.x.denom()).lcm(p.y.denom()));
     let whole = |v: &Rat| v.numer() * &h.div_exact(v.denom());
     (points.map(|p| [whole(&p.x), whole(&p.y)]).collect(), h)
 }

@@ -234,12 +234,7 @@ impl Remainder {
         let free = free.filter(|(_, c)| c.range.lower.is_none() && c.range.upper.is_none());
         let columns = free.map(|(j, c)| {
             let denominators = c.entries.iter().map(|e| e.1.denom());
-            let scale = denominators.fold(c.cost.denom().clone(), |l, d| {
-                if d.is_one() || *d == l {
-                    return l;
-                }
-                &l * &d.div_exact(&l.gcd(d))
-            });
+            let scale = denominators.fold(c.cost.denom().clone(), |l, d| l.lcm(d));
             let integral = |v: &Rat| {
                 if *v.denom() == scale {
                     v.numer().clone()
@@ -290,9 +285,9 @@ impl Rooms {
         let mut scale = vec![Int::one(); model.rows.len()];
         for c in &model.columns {
             for (i, a) in &c.entries {
-                let (l, d) = (&mut scale[*i as usize], a.denom());
-                if !d.is_one() && *d != *l {
-                    *l = &*l * &d.div_exact(&l.gcd(d));
+                let l = &mut scale[*i as usize];
+                if *a.denom() != *l {
+                    *l = l.lcm(a.denom());
                 }
             }
         }

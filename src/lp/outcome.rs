@@ -370,14 +370,7 @@ pub(crate) fn conclude(model: &Model, verdict: &Verdict<'_>, want_values: bool) 
 
 /// d times the least common multiple of the contents that scaling took out.
 fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
-    let one = Int::one();
-    let common = contents.fold(one.clone(), |l, c| {
-        if *c == one || *c == l {
-            return l;
-        }
-        let g = l.gcd(c);
-        &l * &c.div_exact(&g)
-    });
+    let common = contents.fold(Int::one(), |l, c| l.lcm(c));
     d * &common
 }
 

@@ -127,14 +127,6 @@ pub(crate) fn to_words(v: &Int, limbs: usize, out: &mut Vec<u64>) {
     }
 }
 
-fn lcm(a: &Int, b: &Int) -> Int {
-    if *b == Int::one() || a == b {
-        return a.clone();
-    }
-    let g = a.gcd(b);
-    a * &b.div_exact(&g)
-}
-
 impl Problem {
     /// Scales a model to integers; None where they would grow past [`MAX_BITS`].
     pub(crate) fn new(model: &Model) -> Option<Problem> {
@@ -146,7 +138,7 @@ impl Problem {
                 let d = v.denom();
                 if *d != one {
                     let slot = &mut clear[*i as usize];
-                    *slot = lcm(slot, d);
+                    *slot = slot.lcm(d);
                     if slot.bits() > MAX_BITS {
                         return None;
                     }
@@ -255,7 +247,7 @@ impl Problem {
         }
         let mut bound_scale = one.clone();
         for v in lower.iter().chain(&upper).flatten() {
-            bound_scale = lcm(&bound_scale, v.denom());
+            bound_scale = bound_scale.lcm(v.denom());
             if bound_scale.bits() > MAX_BITS {
                 return None;
             }
@@ -274,7 +266,7 @@ impl Problem {
             .collect();
         let mut cost_scale = one.clone();
         for v in &costs {
-            cost_scale = lcm(&cost_scale, v.denom());
+            cost_scale = cost_scale.lcm(v.denom());
             if cost_scale.bits() > MAX_BITS {
                 return None;
             }

@@ -209,7 +209,10 @@ impl<K: Kernel> Runner<'_, K> {
         );
         let next = self.begin(start, &z, &inc, touching);
         let known = self.set.method == Method::Auto && self.set.known.is_some();
-        if (known || self.set.method.sweeps(self.slice.arcs().len())) && K::ENCLOSES {
+        // By name every kernel that can vouch for F sweeps; of itself only the one that asks enclosures.
+        let asked = K::CERTIFIED && self.set.method == Method::Sweep;
+        let pays = K::ENCLOSES && self.set.method.sweeps(self.slice.arcs().len());
+        if known || asked || pays {
             let seed = self.seed(&next, start, &z, &inc);
             self.look_from(seed);
         }

@@ -59,11 +59,12 @@ impl Arithmetic {
 
 impl Method {
     /// What runs under an arithmetic. F is traced with certified doubles first: so the reference, which
-    /// knows none, scans, and so do doubles alone, which cannot vouch for F.
+    /// knows none, scans unless the sweep is asked for by name; doubles alone always do, as they cannot
+    /// vouch for F.
     pub fn under(self, arithmetic: &Arithmetic) -> Method {
-        match arithmetic {
-            Arithmetic::Filtered => self,
-            Arithmetic::Exact | Arithmetic::F64(_) => Method::Naive,
+        match (arithmetic, self) {
+            (Arithmetic::Filtered, _) | (Arithmetic::Exact, Method::Sweep) => self,
+            (Arithmetic::Exact | Arithmetic::F64(_), _) => Method::Naive,
         }
     }
 }

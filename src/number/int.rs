@@ -161,6 +161,24 @@ impl Int {
         }
         canonical(Long::of_words(minus, &words[..n]))
     }
+    /// Least common multiple of positive integers; where one divides the other, as denominators mostly
+    /// do, a division tells.
+    pub(crate) fn lcm(&self, other: &Int) -> Int {
+        match (&self.0, &other.0) {
+            (_, Small(1)) => self.clone(),
+            (Small(1), _) => other.clone(),
+            (Small(a), Small(b)) if narrow(*a) && narrow(*b) => {
+                let (a, b) = (a.unsigned_abs() as u64, b.unsigned_abs() as u64);
+                if b != 0 && a % b == 0 {
+                    return Int(Small(a.into()));
+                }
+                let g = gcd_u64(a, b).max(1);
+                Int::from_u128(u128::from(a) * u128::from(b / g))
+            }
+            _ if self == other => self.clone(),
+            _ => self * &other.div_exact(&self.gcd(other)),
+        }
+    }
     /// Exact quotient; the caller knows that `d` divides `self` (the result means nothing otherwise).
     ///
     /// # Panics
@@ -533,6 +551,23 @@ mod tests {
             "{}",
             std::mem::size_of::<Int>()
         );
+    }
+
+    /// Against a·b/gcd, for words, their border and integers past it.
+    #[test]
+    fn common_multiples() {
+        let big = Int::one().shl(130);
+        let small = [1i64, 2, 3, 10, 12, 1 << 40, i64::MAX].map(Int::from);
+        let all: Vec<Int> = small
+            .iter()
+            .flat_map(|v| [v.clone(), v * &big, v.shl(63)])
+            .collect();
+        for a in &all {
+            for b in &all {
+                let slow = (a * b).div_exact(&a.gcd(b));
+                assert_eq!(a.lcm(b), slow, "{a} and {b}");
+            }
+        }
     }
 
     #[test]

@@ -81,6 +81,18 @@ impl Rat {
         let k = z.min(e.unsigned_abs());
         raw(m.shr(k), Int::one().shl(e.unsigned_abs() - k))
     }
+    /// m/10^k in lowest terms, for k up to 18: only 2 and 5 can be common.
+    pub(crate) fn decimal(m: i64, k: u32) -> Rat {
+        if m == 0 {
+            return Rat::zero();
+        }
+        let twos = m.trailing_zeros().min(k);
+        let (mut m, mut fives) = (m >> twos, 0);
+        while fives < k && m % 5 == 0 {
+            (m, fives) = (m / 5, fives + 1);
+        }
+        raw(Int::from(m), Int::from(5i64.pow(k - fives) << (k - twos)))
+    }
     /// Zero.
     #[inline]
     pub fn zero() -> Rat {
@@ -394,5 +406,33 @@ impl Div<Rat> for &Rat {
     type Output = Rat;
     fn div(self, o: Rat) -> Rat {
         self.over(&o)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the fraction reduced by its gcd.
+    #[test]
+    fn decimals_are_in_lowest_terms() {
+        let digits = [
+            0i64,
+            1,
+            5,
+            10,
+            32,
+            125,
+            375,
+            1 << 50,
+            999_999_999_999_999_999,
+        ];
+        for m in digits.into_iter().flat_map(|m| [m, -m]) {
+            for k in 0..=18 {
+                let slow = Rat::new(Int::from(m), Int::from(10i64.pow(k)));
+                let fast = Rat::decimal(m, k);
+                assert_eq!((fast.numer(), fast.denom()), (slow.numer(), slow.denom()));
+            }
+        }
     }
 }

@@ -267,7 +267,7 @@ pub(crate) enum Backend {
 pub(crate) enum Method {
     /// By the size of each phase; the result says what ran
     Auto,
-    /// A sweep over the free component; with exact or f64 every step looks at every arc
+    /// A sweep over the free component; with f64 every step looks at every arc
     Sweep,
     /// Every step looks at every arc
     Naive,

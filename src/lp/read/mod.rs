@@ -141,15 +141,13 @@ fn short_decimal(text: &str) -> Option<Rat> {
     if digits.is_empty() || digits.len() > 18 {
         return None;
     }
-    let (mut value, mut scale, mut point, mut any) = (0i64, 1i64, false, false);
+    let (mut value, mut places, mut point, mut any) = (0i64, 0, false, false);
     for &b in digits {
         match b {
             b'0'..=b'9' => {
                 value = value * 10 + i64::from(b - b'0');
                 any = true;
-                if point {
-                    scale *= 10;
-                }
+                places += u32::from(point);
             }
             b'.' if !point => point = true,
             _ => return None,
@@ -159,11 +157,7 @@ fn short_decimal(text: &str) -> Option<Rat> {
         return None;
     }
     let value = if negative { -value } else { value };
-    Some(if scale == 1 {
-        Rat::from(value)
-    } else {
-        Rat::frac(value, scale)
-    })
+    Some(Rat::decimal(value, places))
 }
 
 /// `1.`, `.5e3` and `1D3`, which old files write, in the stricter grammar of exact literals.
