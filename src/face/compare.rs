@@ -5,19 +5,13 @@
 //! where the curves are small, with error bounds in doubles otherwise, and exactly in any case.
 
 use super::approx::{Approx, horner};
+use super::cluster::Core;
 use super::isolate::{Roots, bernstein, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
 use crate::number::filter::{self, Stage};
 use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
-
-/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
-#[derive(Clone, Copy)]
-pub(super) struct Core {
-    pub(super) middle: f64,
-    pub(super) half: f64,
-}
 
 /// The difference of two curves as a quotient of polynomials of degree n.
 pub(super) struct Gap {
@@ -93,7 +87,7 @@ impl Kernel {
     /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
     /// quadratic; else it is P₁Q₂ − P₂Q₁.
     #[inline]
-    fn proportional(&self, c: CurveId, d: CurveId) -> bool {
+    pub(super) fn proportional(&self, c: CurveId, d: CurveId) -> bool {
         self.curves[c as usize].den == self.curves[d as usize].den
     }
 
@@ -269,7 +263,12 @@ impl Kernel {
 
     /// The slope of a curve over a number.
     pub(super) fn slope(&self, c: CurveId, x: NumId) -> Approx {
-        let (curve, u) = (&self.curves[c as usize], self.approx(x));
+        self.slope_over(c, self.approx(x))
+    }
+
+    /// Its slopes over all that a double and its error enclose; nothing is known where there may be a pole.
+    pub(super) fn slope_over(&self, c: CurveId, u: Approx) -> Approx {
+        let curve = &self.curves[c as usize];
         let (p, q) = (horner(&curve.p, u), horner(&curve.q, u));
         let (dp, dq) = (derivative(&curve.p, u), derivative(&curve.q, u));
         (dp * q - p * dq).over(q * q)
@@ -355,8 +354,16 @@ impl Kernel {
         if c == d {
             return ([Approx::default(); 5], below);
         }
-        let mut top = self.full_difference(c, d);
-        let mut n = 4;
+        // With one denominator for both it is cancelled: what is left of two of degree two is a line, and its hull no
+        // more than that.
+        let (mut top, mut n) = if self.proportional(c, d) {
+            let lead = a.q.iter().rev().find(|q| q.v != 0.0);
+            below = [Approx::default(); 5];
+            below[0] = lead.copied().unwrap_or_default();
+            (self.diff(c, d), 2)
+        } else {
+            (self.full_difference(c, d), 4)
+        };
         for &(x, order) in at {
             for _ in 0..order {
                 deflate(&mut top, &mut n, self.approx(x));

@@ -17,10 +17,12 @@
 mod approx;
 mod bands;
 mod boundary;
+mod cluster;
 mod compare;
 mod cylinder;
 mod frames;
 mod hash;
+mod hulls;
 mod island;
 mod isolate;
 mod item;
@@ -35,6 +37,7 @@ mod region;
 mod run;
 mod stops;
 mod trace;
+mod windows;
 
 pub use boundary::Found;
 pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};
