@@ -253,7 +253,14 @@ impl Tracer<'_> {
                 end += 1;
             }
             let v = self.vertex_of(item, &hits[at..end]);
-            for &b in &twins {
+            // One walk need tell the others on a curve but once; where items have colours each sees others.
+            let known = match me.carrier {
+                Carrier::Graph(c) if me.color == 0 && !twins.is_empty() => {
+                    self.told.insert((v, c), ()).is_some()
+                }
+                _ => false,
+            };
+            for &b in twins.iter().filter(|_| !known) {
                 self.share(v, b, &hits[at..end]);
             }
             self.stops.push(v);

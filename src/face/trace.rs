@@ -120,6 +120,8 @@ pub(crate) struct Tracer<'a> {
     pub(super) mark_serial: u32,
     /// The vertices of many arcs that an item passes through.
     pub(super) busy: FastMap<u32, Vec<u32>>,
+    /// Vertices on a curve of which all its items there know.
+    pub(super) told: FastMap<(u32, CurveId), ()>,
     /// Those that pass through one such vertex, blown up there, and to which of them an item belongs.
     pub(super) pencils: Vec<Pencil>,
     pub(super) pencil_of: Vec<u32>,
@@ -183,6 +185,7 @@ impl<'a> Tracer<'a> {
             mark: vec![0; items.len()],
             mark_serial: 0,
             busy: FastMap::default(),
+            told: FastMap::default(),
             pencils: Vec::new(),
             pencil_of: vec![NONE; items.len()],
             fans: Vec::new(),
