@@ -451,7 +451,16 @@ fn conventions_are_told() {
 
 #[test]
 fn a_limit_is_named_as_the_reason_of_floats_too() {
-    let folder = folder("float-limit", OPTIMAL);
+    // Long enough for the limit to be looked at.
+    let mut model = "Minimize\n".to_owned();
+    model += &(0..600)
+        .map(|i| format!(" + {} x{i}\n", 1 + i * 7 % 11))
+        .collect::<String>();
+    model += "Subject To\n";
+    for i in 0..599 {
+        model += &format!(" x{i} + {} x{} >= {}\n", 1 + i % 3, i + 1, 1 + i * 5 % 13);
+    }
+    let folder = folder("float-limit", &(model + "End\n"));
     let args = ["lp", "m.lp", "--accuracy", "float", "--time-limit", "0"];
     let output = snapfit(&folder, &args);
     assert_eq!(output.status.code(), Some(3), "{}", stderr(&output));

@@ -125,7 +125,8 @@ fn form(model: &Model, result: &Value) -> Result<(), Rejection> {
         (Some(_), true) => return reject("`reason` is no text"),
         (Some(_), false) => return reject("there is a `reason` for what is decided"),
     }
-    if result.get("relaxed") != model.relaxed.then(|| json!(true)).as_ref() {
+    let relaxed = model.relaxed.then_some(Value::Bool(true));
+    if result.get("relaxed") != relaxed.as_ref() {
         return reject("`relaxed` is not what the model's integers say");
     }
     let ignored = model.ignored_rhs.as_ref().map(|v| json!(v.to_string()));
