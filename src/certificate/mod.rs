@@ -4,5 +4,6 @@
 pub mod lp;
 mod lp_basis;
 mod lp_digits;
+pub mod lp_json;
 pub(crate) mod lp_near;
 pub mod lp_result;

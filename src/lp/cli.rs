@@ -7,7 +7,7 @@ use super::read::read_model;
 use super::report::{from_json, to_json};
 use super::solve::{Accuracy, Method, Options, solve};
 use crate::certificate::lp::verify;
-use crate::certificate::lp_result::agrees;
+use crate::certificate::{lp_json, lp_result};
 use std::io::{Read, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -134,11 +134,8 @@ pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>, write: Write<'_>) -> u8 {
             Ok(m) => m,
         },
     };
-    if model.relaxed && !args.quiet {
-        let _ = writeln!(
-            std::io::stderr(),
-            "{name}: warning: integer columns are relaxed; what follows is the continuous program"
-        );
+    if !args.quiet {
+        warn(&model, args, &name);
     }
     let outcome = solve(&model, &options);
     let mut text = to_json(&model, &name, &outcome).to_string();
@@ -151,12 +148,59 @@ pub fn run_lp(args: &LpArgs, meter: &Arc<Meter>, write: Write<'_>) -> u8 {
     }
 }
 
-/// The model that a result names: from here or, where there is none, from where the result is.
-fn beside(model: &Path, result: &Path) -> PathBuf {
-    match result.parent() {
-        Some(folder) if !model.exists() && folder.join(model).exists() => folder.join(model),
-        _ => model.to_owned(),
+/// Says what was made of the model that its writer may not have meant.
+fn warn(model: &Model, args: &LpArgs, name: &str) {
+    let mut err = std::io::stderr().lock();
+    let mut say = |what: String| {
+        let _ = writeln!(err, "{name}: warning: {what}");
+    };
+    if args.model.to_str().is_none() {
+        say(
+            "this name is not UTF-8, so the result cannot hold it; `verify` will need --model FILE"
+                .into(),
+        );
     }
+    if model.relaxed {
+        say("integer columns are relaxed; what follows is the continuous program".into());
+    }
+    if let Some(v) = model.ignored_rhs.as_ref().filter(|v| !v.is_zero()) {
+        say(format!(
+            "the objective's right-hand side {v} is not part of the objective, as the published optima have it"
+        ));
+    }
+    if let Some(names) = model.freed_names() {
+        let others = match names.len() - 1 {
+            0 => String::new(),
+            n => format!(" and of {n} more"),
+        };
+        say(format!(
+            "the upper bound of column `{}`{others} is negative and no lower bound is given: the lower bound is -infinity",
+            names[0]
+        ));
+    }
+}
+
+/// The model that a result names: as it is written, seen from here, or, where there is none, from
+/// where the result is. Two files that differ are not chosen from.
+fn named(model: &Path, result: &Path) -> Result<PathBuf, String> {
+    let folder = result.parent().filter(|p| !p.as_os_str().is_empty());
+    let Some(beside) = folder.map(|f| f.join(model)).filter(|p| p.exists()) else {
+        return Ok(model.to_owned());
+    };
+    if !model.exists() {
+        return Ok(beside);
+    }
+    let place = |p: &Path| std::fs::canonicalize(p).ok();
+    let one = place(model).is_some_and(|p| Some(p) == place(&beside));
+    if one || matches!((read(model), read(&beside)), (Ok(a), Ok(b)) if a == b) {
+        return Ok(model.to_owned());
+    }
+    Err(format!(
+        "{}: its model `{}` may be the file of that name here or {}, which differ; name one by --model FILE",
+        result.display(),
+        model.display(),
+        beside.display()
+    ))
 }
 
 /// The verdict on a result, the reason for it, and the exit status.
@@ -166,7 +210,10 @@ fn beside(model: &Path, result: &Path) -> PathBuf {
 /// verified like any other.
 fn judge(model: &Model, result: &serde_json::Value) -> (&'static str, Option<String>, u8) {
     let undecided = result["status"] == "undecided";
-    if undecided && claims_nothing(result) {
+    if undecided && result["certificate"].is_null() {
+        if let Err(e) = lp_result::claims_nothing(model, result) {
+            return ("rejected", Some(e.0), REJECTED);
+        }
         let why = "the result is undecided and claims nothing: there is nothing to check";
         return ("nothing claimed", Some(why.to_string()), UNDECIDED);
     }
@@ -174,7 +221,7 @@ fn judge(model: &Model, result: &serde_json::Value) -> (&'static str, Option<Str
         Ok(claim) => claim,
         Err(e) => return ("rejected", Some(e), REJECTED),
     };
-    match verify(model, &claim).and_then(|()| agrees(model, &claim, result)) {
+    match verify(model, &claim).and_then(|()| lp_result::agrees(model, &claim, result)) {
         Ok(()) if undecided => {
             let what = match &claim.enclosure {
                 (Some(_), Some(_)) => "both its bounds hold",
@@ -188,19 +235,6 @@ fn judge(model: &Model, result: &serde_json::Value) -> (&'static str, Option<Str
     }
 }
 
-/// Whether a result has neither a number nor a proof.
-fn claims_nothing(result: &serde_json::Value) -> bool {
-    let claims = [
-        &result["objective"],
-        &result["certificate"],
-        &result["bounds"]["lower"],
-        &result["bounds"]["upper"],
-        &result["primal"],
-        &result["dual"],
-    ];
-    claims.iter().all(|v| v.is_null())
-}
-
 /// Runs `snapfit verify`; the result is the exit status.
 pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
     let result = match read(&args.result) {
@@ -208,7 +242,7 @@ pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
         Ok(bytes) => bytes,
     };
     let name = args.result.display();
-    let result: serde_json::Value = match serde_json::from_slice(&result) {
+    let result: serde_json::Value = match lp_json::read(&result) {
         Ok(v) => v,
         Err(e) => {
             return bad(format!(
@@ -225,7 +259,10 @@ pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
                 "{name}: its model came from standard input; name it by --model FILE"
             ));
         }
-        (None, Some(p)) => beside(Path::new(p), &args.result),
+        (None, Some(p)) => match named(Path::new(p), &args.result) {
+            Ok(p) => p,
+            Err(e) => return bad(e),
+        },
         (None, None) => {
             return bad(format!(
                 "{name}: this is no result of `snapfit lp`: it names no model"
@@ -240,8 +277,12 @@ pub fn run_verify(args: &VerifyArgs, write: Write<'_>) -> u8 {
         },
     };
     let (verdict, reason, code) = judge(&model, &result);
-    let verdict =
-        serde_json::json!({ "verdict": verdict, "reason": reason, "status": result["status"] });
+    let verdict = serde_json::json!({
+        "verdict": verdict,
+        "reason": reason,
+        "status": result["status"],
+        "model": path.to_string_lossy(),
+    });
     match write(None, &format!("{verdict}\n")) {
         Ok(()) => code,
         Err(e) => bad(e),

@@ -95,6 +95,10 @@ pub struct Model {
     /// Value given for the objective's right-hand side in an MPS file. By the convention of the
     /// published optima it is not part of the objective; it is kept so that a caller may say so.
     pub ignored_rhs: Option<Rat>,
+    /// Columns to which an MPS file gives a negative upper bound and no lower one. By the format's
+    /// old convention their lower bound is −∞ here, where some readers keep zero; they are kept so
+    /// that a caller may say so.
+    pub freed: Vec<u32>,
     /// Whether the file asked for integers, which a linear program leaves out.
     pub relaxed: bool,
 }
@@ -133,6 +137,12 @@ impl Model {
         if !value.is_zero() {
             self.columns[column].entries.push((row as u32, value));
         }
+    }
+
+    /// Names of the columns that are [`Model::freed`]; None where there are none.
+    pub(crate) fn freed_names(&self) -> Option<Vec<&str>> {
+        let name = |j: &u32| self.columns[*j as usize].name.as_str();
+        (!self.freed.is_empty()).then(|| self.freed.iter().map(name).collect())
     }
 
     /// Number of non-zero coefficients.

@@ -47,6 +47,9 @@ pub fn to_json(model: &Model, file: &str, outcome: &Outcome) -> Value {
         if let Some(v) = &model.ignored_rhs {
             map.insert("ignored_objective_rhs".into(), json!(v.to_string()));
         }
+        if let Some(names) = model.freed_names() {
+            map.insert("negative_upper_bounds".into(), json!(names));
+        }
         if let Some(values) = &outcome.values {
             let names = model.columns.iter().map(|c| c.name.clone());
             let pairs = names.zip(values.iter().map(|v| json!(v.to_string())));
@@ -160,7 +163,8 @@ pub fn from_json(model: &Model, result: &Value) -> Result<Claim, String> {
             let mut order = Vec::new();
             for pair in c["order"].as_array().ok_or("`order` is missing")? {
                 let part = |k: usize| pair[k].as_u64().and_then(|v| u32::try_from(v).ok());
-                let (Some(i), Some(j)) = (part(0), part(1)) else {
+                let two = pair.as_array().is_some_and(|p| p.len() == 2);
+                let (Some(i), Some(j), true) = (part(0), part(1), two) else {
                     return Err("`order` holds pairs of indices".into());
                 };
                 order.push((i, j));

@@ -118,14 +118,15 @@ fn decide(model: &Model, options: &Options, budget: &Budget) -> Outcome {
         }
     }
     let start = if options.method == Method::Warm {
-        let proposal = float::propose(&problem, given.as_ref(), &budget.most());
+        let most = budget.most();
+        let proposal = float::propose(&problem, given.as_ref(), &most);
         iterations += proposal.iterations;
         blame = proposal.blame;
         guess = (proposal.point.clone(), proposal.prices.clone());
         if options.accuracy == Accuracy::Float {
             return Outcome {
                 near: guess.0,
-                ..unproven(model, &proposal)
+                ..unproven(model, &proposal, most.check().is_err())
             };
         }
         proposal.basis
@@ -203,8 +204,8 @@ fn grace(limit: Duration) -> Duration {
     (limit / 10).max(Duration::from_millis(50))
 }
 
-/// What floating point says, with nothing to prove it.
-fn unproven(model: &Model, proposal: &float::Proposal) -> Outcome {
+/// What floating point says, with nothing to prove it; `late` where its time is over.
+fn unproven(model: &Model, proposal: &float::Proposal, late: bool) -> Outcome {
     let mut out = Outcome::undecided("");
     out.reason = None;
     out.float_iterations = proposal.iterations;
@@ -215,7 +216,9 @@ fn unproven(model: &Model, proposal: &float::Proposal) -> Outcome {
         float::Ending::Stuck => Status::Undecided,
     };
     if out.status == Status::Undecided {
-        out.reason = Some("floating point gave up".to_string());
+        let limit = late || proposal.exhausted;
+        let reason = ["floating point gave up", "a limit was reached"][usize::from(limit)];
+        out.reason = Some(reason.to_string());
     }
     if out.status == Status::Optimal && proposal.objective.is_finite() {
         let value = Rat::from_f64(proposal.objective);

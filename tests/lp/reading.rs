@@ -27,6 +27,16 @@ fn readers_say_where() {
     assert_eq!(place("a.lp", "min x + x\nst\nend").0, 1);
     assert_eq!(place("a.lp", "min x\nst\n x + >= 2\nend").0, 3);
     assert_eq!(place("a.lp", "min x\nst\n x >= 1/0\nend").0, 3);
+    for text in ["min nan x\nst\nend", "min y\nst\n c: inf x >= 1\nend"] {
+        let (line, column, message) = place("a.lp", text);
+        assert!(message.ends_with("is not a number"), "{message}");
+        let word = if line == 1 { "nan" } else { "inf" };
+        let before = text.lines().nth(line - 1).and_then(|l| l.find(word));
+        assert_eq!(Some(column - 1), before, "{message}");
+    }
+    let (line, column, message) = place("a.lp", "min x y\nst\nend");
+    assert_eq!((line, column), (1, 7), "{message}");
+    assert!(message.contains("an operator"), "{message}");
     assert!(read_model("a.mps", &[0x1f, 0x8b, 1, 2]).is_err());
     assert_eq!(
         read_model("a.mps", b"NAME\n\xff").expect_err("bytes").line,
@@ -51,6 +61,7 @@ fn mps_bounds_and_ranges() {
     assert_eq!(m.rows[1].range, range(Some(1), Some(5)));
     assert_eq!(m.rows[2].range, range(Some(-5), Some(0)));
     assert_eq!(m.columns[0].range, range(None, Some(-2)));
+    assert_eq!(m.freed, [0]);
     assert_eq!(m.columns[1].range, Range::free());
     assert_eq!(m.columns[2].range, range(None, Some(8)));
     assert_eq!(m.columns[3].range, Range::fixed(Rat::frac(1, 3)));

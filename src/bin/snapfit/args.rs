@@ -295,4 +295,6 @@ pub(crate) enum Name {
     Classify,
     /// The result of `forces`
     Forces,
+    /// The result of `lp`
+    Lp,
 }

@@ -81,7 +81,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Loosen(args) => flex_apps::run_loosen(args),
         Verb::Separate(args) => flex_apps::run_separate(args),
         Verb::Lp(args) => {
-            output::spare_input(&args.model, args.out.as_deref())?;
+            output::prepare(&args.model, args.out.as_deref())?;
             Ok(progress::solving(args))
         }
         Verb::Verify(args) => Ok(snapfit::lp::cli::run_verify(args, &output::write)),
@@ -94,6 +94,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
                 Name::Slice => snapfit::report::slice::slice_schema(),
                 Name::Classify => analysis::classify_schema(),
                 Name::Forces => analysis::forces_schema(),
+                Name::Lp => snapfit::lp::lp_schema(),
             };
             let compact = serde_json::to_string(&schema).map_err(|e| e.to_string())?;
             output::write(args.out.as_deref(), &(pretty(&compact, 100) + "\n"))?;

@@ -17,6 +17,8 @@ pub(crate) struct Proposal {
     pub(crate) basis: Basis,
     pub(crate) iterations: u64,
     pub(crate) ending: Ending,
+    /// Whether a limit of time or memory stopped one of the attempts.
+    pub(crate) exhausted: bool,
     /// Where the program seemed infeasible, the basic variable that cannot be repaired.
     pub(crate) blame: Option<usize>,
     /// Values of the model's columns, prices of its rows; to be taken for what they are.
@@ -60,10 +62,12 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
         entries >= LARGE && !dear(&program)
     };
     let mut iterations = 0;
+    let mut exhausted = false;
     let mut best: Option<(Vec<Status>, Ending, f64, Option<usize>)> = None;
     let mut point = (Vec::new(), Vec::new());
     let mut take = |engine: &mut Engine<'_>, ending: Result<Ending, Exhausted>| {
         iterations += engine.iterations;
+        exhausted |= ending.is_err();
         let ending = ending.unwrap_or(Ending::Stuck);
         if best.is_none() || ending != Ending::Stuck {
             best = Some((
@@ -126,6 +130,7 @@ pub(crate) fn propose(problem: &Problem, start: Option<&Basis>, budget: &Budget)
     Proposal {
         basis: program.basis(problem, &status),
         iterations,
+        exhausted,
         point: point.0,
         prices: point.1,
         blame: blame.filter(|_| ending == Ending::Infeasible && !program.dualised),

@@ -211,6 +211,23 @@ impl<'a> Parser<'a> {
         })
     }
 
+    /// A fault at the cursor, or just before it where a word that means no finite number stands in
+    /// a number's place.
+    fn misplaced<T>(&self, message: &str) -> Result<T, At> {
+        let before = self.at.checked_sub(1).map(|i| &self.tokens[i]);
+        if let (Some(t), Token::Name(_)) = (before, self.peek(0))
+            && let Token::Name(word) = t.token
+            && ["nan", "inf", "infinity"].contains(&word.to_ascii_lowercase().as_str())
+        {
+            return Err(At {
+                line: t.line,
+                column: t.column,
+                message: format!("`{word}` is not a number"),
+            });
+        }
+        self.fault(message)
+    }
+
     /// A section heading at the cursor and the number of tokens it takes. Headings stand at the
     /// start of a line, and a word that is followed by a colon is a row's name.
     fn heading(&self) -> Option<(Heading, usize)> {
@@ -256,8 +273,11 @@ impl<'a> Parser<'a> {
                 };
             }
             let Some((heading, length)) = self.heading() else {
-                return self
-                    .fault("a section heading (Maximize, Subject To, Bounds, …) is missing");
+                return self.misplaced(if objective {
+                    "an operator or a section heading (Subject To, Bounds, …) is missing before this"
+                } else {
+                    "a section heading (Maximize, Subject To, Bounds, …) is missing"
+                });
             };
             if heading == Heading::Refused {
                 return self.fault("this section is not linear programming");
@@ -436,7 +456,7 @@ impl<'a> Parser<'a> {
         let serial = row + 2;
         let mut left = self.expression(serial, false)?;
         let Some(relation) = self.relation() else {
-            return self.fault("a constraint needs <=, >= or =");
+            return self.misplaced("a constraint needs <=, >= or =");
         };
         let right = self.expression(serial, true)?;
         let second = self.relation();

@@ -4,7 +4,7 @@
 //! blank in it), the fixed columns of the old cards are used. The first free row is the
 //! objective, further free rows are left out. Only the first right-hand side, range and bound
 //! set count. A negative upper bound on a column whose lower bound was not given makes that
-//! lower bound −∞. An upper bound of exactly 10³⁰ and a lower one of exactly −10³⁰ are infinite,
+//! lower bound −∞, which [`Model::freed`] remembers. An upper bound of exactly 10³⁰ and a lower one of exactly −10³⁰ are infinite,
 //! as writers of this format have meant it since its time and readers take it (Clp, QSopt,
 //! and those whose infinity begins at 10²⁰); any other number is that number. A right-hand side of
 //! the objective is remembered but not added: see [`Model::ignored_rhs`].
@@ -468,6 +468,10 @@ impl<'a> Reader<'a> {
     }
 
     fn finish(mut self) -> Model {
+        // Nothing else leaves a column without the lower bound that it was not given.
+        let columns = (0..).zip(&self.model.columns).zip(&self.lower_given);
+        let freed = columns.filter(|((_, c), given)| !*given && c.range.lower.is_none());
+        self.model.freed = freed.map(|((j, _), _)| j).collect();
         for (i, row) in self.model.rows.iter_mut().enumerate() {
             let b = self.rhs[i].take().unwrap_or_else(Rat::zero);
             let r = self.ranges[i].take();
