@@ -4,8 +4,8 @@
 //! start of the phase, as t does in the curves.
 
 use super::json::{
-    ContactDocument, CurveDocument, EventDocument, Infinity, SegmentDocument, TanHalf, named_contact,
-    run_documents,
+    ContactDocument, CurveDocument, EventDocument, Infinity, SegmentDocument, TanHalf,
+    named_contact, run_documents,
 };
 use super::num::{Num, Numbers};
 use crate::motion::friction::regions;
