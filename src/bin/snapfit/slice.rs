@@ -4,7 +4,7 @@ use super::args::{Arithmetic, Common, Engine, Method, Render};
 use super::{DECIDED, Failure, UNDECIDED, limit, output};
 use clap::Args;
 use snapfit::motion::plan::Progress;
-use snapfit::motion::{Options, Seen, Trajectory, slices};
+use snapfit::motion::{Options, OutcomeKind, Seen, Trajectory, slices};
 use snapfit::number::Rat;
 use snapfit::report::json::ResultDocument;
 use snapfit::report::picture::{SlicePicture, slice_svg};
@@ -67,12 +67,12 @@ fn heeded(engine: &Engine) -> Result<(), Failure> {
     super::provenance(engine).map(|_| ())
 }
 
-/// The slice that is meant, with the whole trajectory.
+/// The slice that is meant, with the whole trajectory; None where a limit came before it.
 fn seen(
     file: &SceneFile,
     options: &Options<'_>,
     which: &Which,
-) -> Result<(Seen, Trajectory), Failure> {
+) -> Result<(Option<Seen>, Trajectory), Failure> {
     let scene = file.scene();
     let pawl = match &which.pawl {
         None => 0,
@@ -90,8 +90,8 @@ fn seen(
         }
     })
     .map_err(|e| super::misplanned(file, &e))?;
-    let found = found.ok_or_else(|| {
-        format!(
+    if found.is_none() && trajectory.outcome.kind != OutcomeKind::Undecided {
+        return Err(format!(
             "--phase {}: the plan ran through {} phase{}, counted from 0",
             phase,
             trajectory.phases.len(),
@@ -101,7 +101,8 @@ fn seen(
                 "s"
             }
         )
-    })?;
+        .into());
+    }
     Ok((found, trajectory))
 }
 
@@ -180,6 +181,7 @@ pub(crate) fn run_slice(args: &SliceArgs) -> Result<u8, Failure> {
             ..Options::default()
         };
         let (seen, _) = seen(&file, &options, &which)?;
+        let seen = seen.ok_or_else(|| "undecided without a limit".to_owned())?;
         let mut document = SliceDocument::new(file.scene(), &seen);
         questions.ask(&file, &seen, &mut document)?;
         serde_json::to_string(&document).map_err(|e| e.to_string().into())
@@ -216,6 +218,13 @@ pub(crate) fn run_render(
         ..Options::default()
     };
     let (seen, trajectory) = seen(file, &options, &args.which)?;
+    let Some(seen) = seen else {
+        let _ = writeln!(
+            std::io::stderr(),
+            "snapfit: undecided: --time-limit came before the slice was built"
+        );
+        return Ok(UNDECIDED);
+    };
     let result = ResultDocument::new(file.scene(), &trajectory, how);
     let picture = SlicePicture {
         scene: file.scene(),
