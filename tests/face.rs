@@ -655,6 +655,87 @@ fn crowded_faces_are_those_of_the_whole_arrangement() {
     }
 }
 
+/// Lines that cross near one point, and some that end there, drawn 2^`bits` times smaller round that point; the
+/// places far from it stay. From `bits` = 12 on, nothing but the size of the cluster depends on that.
+fn cluster(rng: &mut Rng, bits: u64, size: i64) -> Vec<SourceArc> {
+    let scale = Int::one().shl(bits);
+    // 1/2 + i/8 of the scale.
+    let within = |i: i64| RootOf {
+        c: [
+            -(Int::from(4) * &scale + Int::from(i)),
+            Int::from(8) * &scale,
+            Int::zero(),
+        ],
+        k: 0,
+    };
+    (0..size)
+        .map(|i| {
+            let (s, k) = (rng.within(60), rng.within(9));
+            let (mut left, mut right) = (
+                ratio(-100 - rng.below(2900), 1000),
+                ratio(1500 + rng.below(2500), 1000),
+            );
+            let end = within(rng.within(30));
+            match i % 7 {
+                3 => left = end,
+                5 => right = end,
+                _ => {}
+            }
+            SourceArc {
+                p: [
+                    Int::from(2 - s) * &scale + Int::from(k),
+                    Int::from(2 * s) * &scale,
+                    Int::zero(),
+                ],
+                q: [Int::from(2) * &scale, Int::zero(), Int::zero()],
+                left,
+                right,
+                line: 0,
+            }
+        })
+        .collect()
+}
+
+/// However near one another the crossings of a cluster are: told apart by doubles, by the coarse frames or only by the
+/// fine ones.
+#[test]
+fn clusters_have_the_same_faces_at_every_scale() {
+    for round in 0..count(300).max(4) as u64 {
+        let seed = round.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 3;
+        // More than doubles are halved for, and more than the few that make no cluster.
+        let size = 36 + (round % 3) as i64 * 4;
+        let places: Vec<[i64; 2]> = {
+            let mut rng = Rng(seed ^ 1);
+            (0..4).map(|_| [0, 0].map(|_| rng.within(25))).collect()
+        };
+        let mut want: Vec<Option<(u64, u64)>> = Vec::new();
+        for bits in [12, 60, 200, 330, 700] {
+            let arcs = cluster(&mut Rng(seed), bits, size);
+            let scale = Rat::from(Int::one().shl(bits));
+            let near = |at: i64, parts: i64| Rat::frac(at, parts) / scale.clone();
+            let mut starts = vec![(Rat::zero(), Rat::from(-1000))];
+            starts.extend(
+                places
+                    .iter()
+                    .map(|&[i, j]| (Rat::frac(1, 2) + near(i, 7), Rat::one() + near(j, 3))),
+            );
+            if want.is_empty() {
+                let oracle = oracle_arcs(&arcs, &[]);
+                want.extend(starts.iter().map(|z| whole_arrangement(&oracle, z)));
+            }
+            for (start, want) in starts.iter().zip(&want) {
+                for (method, leaf) in [(Method::Walk, 1), (Method::Merge, 30), (Method::Merge, 5)] {
+                    assert_eq!(
+                        ask(&arcs, &[], start, method, leaf),
+                        *want,
+                        "round {round}, 2^-{bits}, {method:?} from {leaf}, start {start:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// Arcs hardly wider than the enclosures of their ends, in a small crowd that makes the walk halve them: an end must
 /// stay in one window with all that meets it there.
 #[test]

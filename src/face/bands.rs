@@ -7,7 +7,7 @@
 //! whatever their common shape is. A band costs five to ten times what a straight strip costs, so bands are
 //! made only once searches were seen to find much that they had to reject.
 
-use super::compare::Gap;
+use super::gap::Gap;
 use super::item::{Carrier, Item};
 use super::kernel::{CurveId, Kernel};
 use crate::geometry::index::Tree;

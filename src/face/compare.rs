@@ -5,95 +5,19 @@
 //! where the curves are small, with error bounds in doubles otherwise, and exactly in any case.
 
 use super::approx::{Approx, horner};
-use super::isolate::{Roots, bernstein, isolate, one_sign};
+use super::cluster::Core;
+use super::isolate::{Roots, isolate, one_sign};
 use super::kernel::{Coeffs, CurveId, Def, Kernel, NumId, two};
 use crate::number::filter::{self, Stage};
 use crate::number::{Int, Poly};
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
-/// Where many curves pass so near one another that doubles do not tell them apart: `half` to either side of `middle`.
-#[derive(Clone, Copy)]
-pub(super) struct Core {
-    pub(super) middle: f64,
-    pub(super) half: f64,
-}
-
-/// The difference of two curves as a quotient of polynomials of degree n.
-pub(super) struct Gap {
-    above: [Approx; 5],
-    below: [Approx; 5],
-    n: usize,
-}
-
-impl Gap {
-    /// An enclosure over [a, b]; None where the denominator may vanish.
-    pub(super) fn range(&self, a: f64, b: f64) -> Option<(f64, f64)> {
-        let (p, q) = (
-            bernstein(&self.above[..=self.n], a, b),
-            bernstein(&self.below[..=self.n], a, b),
-        );
-        let sign = q[0].sign().filter(|&s| s != 0)?;
-        let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (p, q) in p.iter().zip(&q).take(self.n + 1) {
-            if q.sign() != Some(sign) {
-                return None;
-            }
-            let t = p.over(*q);
-            if !(t.v.is_finite() && t.e.is_finite()) {
-                return None;
-            }
-            (lo, hi) = (lo.min(t.lo()), hi.max(t.hi()));
-        }
-        Some((lo, hi))
-    }
-
-    /// Whether it is surely above `high` all over [a, b], or below `low`.
-    pub(super) fn outside(&self, low: f64, high: f64, a: f64, b: f64) -> bool {
-        let m = a + (b - a) * 0.5;
-        let value = |f: &[Approx; 5]| f[..=self.n].iter().rev().fold(0.0, |s, c| s * m + c.v);
-        let (above, below) = (value(&self.above), value(&self.below));
-        let bound = match above / below {
-            v if v > high => high,
-            v if v < low => low,
-            _ => return false,
-        };
-        let bound = Approx::exact(bound);
-        let mut rest = [Approx::default(); 5];
-        for (r, (p, q)) in rest.iter_mut().zip(self.above.iter().zip(&self.below)) {
-            *r = *p - bound * *q;
-        }
-        // The signs are those in the middle.
-        one_sign(&rest[..=self.n], a, b) && one_sign(&self.below[..=self.n], a, b)
-    }
-}
-
 impl Kernel {
-    /// The difference c − d.
-    #[inline]
-    pub(super) fn gap(&self, c: CurveId, d: CurveId) -> Gap {
-        let above = self.diff(c, d);
-        let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
-        let mut below = [Approx::default(); 5];
-        if self.proportional(c, d) {
-            let lead = b.q[(0..3).rev().find(|&i| b.q[i].v != 0.0).unwrap_or(0)];
-            for (o, q) in below.iter_mut().zip(&a.q) {
-                *o = *q * lead;
-            }
-            return Gap { above, below, n: 2 };
-        }
-        for i in 0..3 {
-            for j in 0..3 {
-                below[i + j] = below[i + j] + a.q[i] * b.q[j];
-            }
-        }
-        Gap { above, below, n: 4 }
-    }
-
     /// Whether the denominators are proportional: then h is P₁q₂ − P₂q₁ with their leading coefficients, a
     /// quadratic; else it is P₁Q₂ − P₂Q₁.
     #[inline]
-    fn proportional(&self, c: CurveId, d: CurveId) -> bool {
+    pub(super) fn proportional(&self, c: CurveId, d: CurveId) -> bool {
         self.curves[c as usize].den == self.curves[d as usize].den
     }
 
@@ -124,7 +48,7 @@ impl Kernel {
 
     /// The coefficients of h with certified errors.
     #[inline]
-    fn diff(&self, c: CurveId, d: CurveId) -> [Approx; 5] {
+    pub(super) fn diff(&self, c: CurveId, d: CurveId) -> [Approx; 5] {
         let (a, b) = (&self.curves[c as usize], &self.curves[d as usize]);
         if let (Coeffs::Small(x), Coeffs::Small(y)) = (&a.exact, &b.exact) {
             return if a.tiny && b.tiny {
@@ -269,7 +193,12 @@ impl Kernel {
 
     /// The slope of a curve over a number.
     pub(super) fn slope(&self, c: CurveId, x: NumId) -> Approx {
-        let (curve, u) = (&self.curves[c as usize], self.approx(x));
+        self.slope_over(c, self.approx(x))
+    }
+
+    /// Its slopes over all that a double and its error enclose; nothing is known where there may be a pole.
+    pub(super) fn slope_over(&self, c: CurveId, u: Approx) -> Approx {
+        let curve = &self.curves[c as usize];
         let (p, q) = (horner(&curve.p, u), horner(&curve.q, u));
         let (dp, dq) = (derivative(&curve.p, u), derivative(&curve.q, u));
         (dp * q - p * dq).over(q * q)
@@ -355,8 +284,16 @@ impl Kernel {
         if c == d {
             return ([Approx::default(); 5], below);
         }
-        let mut top = self.full_difference(c, d);
-        let mut n = 4;
+        // With one denominator for both it is cancelled: what is left of two of degree two is a line, and its hull no
+        // more than that.
+        let (mut top, mut n) = if self.proportional(c, d) {
+            let lead = a.q.iter().rev().find(|q| q.v != 0.0);
+            below = [Approx::default(); 5];
+            below[0] = lead.copied().unwrap_or_default();
+            (self.diff(c, d), 2)
+        } else {
+            (self.full_difference(c, d), 4)
+        };
         for &(x, order) in at {
             for _ in 0..order {
                 deflate(&mut top, &mut n, self.approx(x));

@@ -110,6 +110,43 @@ impl Kernel {
         }
     }
 
+    /// The frame that a number was seen from, or a new one there.
+    pub(super) fn frame_of(&mut self, x: NumId) -> u32 {
+        let x = self.find(x);
+        if let Some(&(f, _)) = self.local.get(&x) {
+            return f;
+        }
+        let f = self.new_frame(x, LEVELS[0]);
+        self.frame_near.insert(self.frame_key(x, 0), f);
+        f
+    }
+
+    /// Where a frame lies, in doubles.
+    pub(super) fn frame_range(&self, f: u32) -> (f64, f64) {
+        let frame = &self.frames[f as usize];
+        (frame.lo, frame.hi)
+    }
+
+    /// Exact order of a number and the point at a distance from a frame.
+    pub(super) fn cmp_framed(&mut self, x: NumId, f: u32, off: f64) -> Ordering {
+        let point = Approx::exact(off);
+        let x = self.find(x);
+        let order = self.distance_from(x, f).and_then(|d| apart(d, point));
+        order.unwrap_or_else(|| {
+            let frame = &self.frames[f as usize];
+            let at = Rat::new(frame.at.clone(), Int::one().shl(frame.bits)) + Rat::from_f64(off);
+            self.exact(x).cmp_rat(&at)
+        })
+    }
+
+    /// How far a curve lies above the one that others are compared with at a frame, there.
+    pub(super) fn height_in_frame(&mut self, c: CurveId, f: u32) -> Option<Approx> {
+        let from = *self.frames[f as usize].reference.get_or_insert(c);
+        let (value, q) = self.curve_beside(c, from, f)?;
+        let (_, r) = self.curve_beside(from, from, f)?;
+        Some(value.over(q * r))
+    }
+
     /// Where a number lies, roughly: a double for it, or for the frame that it was seen from and its distance.
     pub(super) fn rough(&mut self, x: NumId) -> [f64; 2] {
         let x = self.find(x);
@@ -224,15 +261,45 @@ impl Kernel {
 
     /// h of two curves at a frame, in long integers.
     fn difference_at(&mut self, c: CurveId, d: CurveId, f: u32) -> Option<Approx> {
-        for curve in [c, d] {
-            self.curve_at_frame(curve, f);
-        }
-        let (p, q) = &self.framed[&(c, f)];
-        let (r, s) = &self.framed[&(d, f)];
-        let value = p * s - r * q;
         let bits = self.frames[f as usize].bits;
         let scale = self.curves[c as usize].scale + self.curves[d as usize].scale;
-        scaled(&value, 4 * bits + scale)
+        for curve in [c, d] {
+            self.top_at_frame(curve, f);
+        }
+        if self.proportional(c, d)
+            && let Some(below) = self.rough_below(c, f)
+        {
+            // h is its part of low degree times the common denominator, which doubles tell well enough.
+            let (p, r) = (&self.framed[&(c, f)], &self.framed[&(d, f)]);
+            let value = p * self.lead(d) - r * self.lead(c);
+            let lead = scaled(&self.lead(c), self.curves[c as usize].scale)?;
+            return Some(scaled(&value, 2 * bits + scale)? * below.over(lead));
+        }
+        let (q, s) = (self.below_at_frame(c, f), self.below_at_frame(d, f));
+        let (p, r) = (&self.framed[&(c, f)], &self.framed[&(d, f)]);
+        scaled(&(p * s - r * q), 4 * bits + scale)
+    }
+
+    /// The last coefficient of a denominator.
+    fn lead(&self, c: CurveId) -> Int {
+        match &self.curves[c as usize].exact {
+            Coeffs::Small(c) => c[3..]
+                .iter()
+                .rev()
+                .find(|x| **x != 0)
+                .copied()
+                .map(Int::from),
+            Coeffs::Big(c) => c[3..].iter().rev().find(|x| !x.is_zero()).cloned(),
+        }
+        .expect("a curve has a denominator")
+    }
+
+    /// A denominator at a frame, in doubles, where these know it sharply.
+    fn rough_below(&self, c: CurveId, f: u32) -> Option<Approx> {
+        let frame = &self.frames[f as usize];
+        let q = &self.curves[c as usize].q;
+        let value = horner(q, Approx::between(frame.lo, frame.hi));
+        (value.e <= value.v.abs() * SHARP).then_some(value)
     }
 
     /// The same in doubles, from what lies between each of the two and a third one: long products only once a
@@ -254,31 +321,36 @@ impl Kernel {
         if let Some(&known) = self.beside.get(&(c, f)) {
             return known;
         }
-        let bits = self.frames[f as usize].bits;
         let value = self.difference_at(c, from, f);
-        let denominator = scaled(
-            &self.framed[&(c, f)].1,
-            2 * bits + self.curves[c as usize].scale,
-        );
+        let denominator = self.rough_below(c, f).or_else(|| {
+            let bits = 2 * self.frames[f as usize].bits + self.curves[c as usize].scale;
+            scaled(&self.below_at_frame(c, f), bits)
+        });
         let known = value.zip(denominator);
         self.beside.insert((c, f), known);
         known
     }
 
-    /// P and Q at a frame, times 2^(2·bits).
-    fn curve_at_frame(&mut self, c: CurveId, f: u32) {
+    /// P at a frame, times 2^(2·bits), is in `framed` then.
+    fn top_at_frame(&mut self, c: CurveId, f: u32) {
         if self.framed.contains_key(&(c, f)) {
             return;
         }
-        let frame = &self.frames[f as usize];
-        let value = match &self.curves[c as usize].exact {
-            Coeffs::Small(c) => {
-                let c = c.map(Int::from);
-                (at_frame(&c[..3], frame), at_frame(&c[3..], frame))
-            }
-            Coeffs::Big(c) => (at_frame(&c[..3], frame), at_frame(&c[3..], frame)),
-        };
+        let value = self.part_at_frame(c, f, 0);
         self.framed.insert((c, f), value);
+    }
+
+    /// Q at a frame, times 2^(2·bits).
+    fn below_at_frame(&self, c: CurveId, f: u32) -> Int {
+        self.part_at_frame(c, f, 3)
+    }
+
+    fn part_at_frame(&self, c: CurveId, f: u32, from: usize) -> Int {
+        let frame = &self.frames[f as usize];
+        match &self.curves[c as usize].exact {
+            Coeffs::Small(c) => at_frame(&c.map(Int::from)[from..from + 3], frame),
+            Coeffs::Big(c) => at_frame(&c[from..from + 3], frame),
+        }
     }
 }
 
@@ -319,5 +391,56 @@ fn apart(a: Approx, b: Approx) -> Option<Ordering> {
         Some(Ordering::Greater)
     } else {
         None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// t = 1 + s·(u − 1/2) + k/2^(bits + 1).
+    fn line(kernel: &mut Kernel, bits: u64, s: i64, k: i64) -> CurveId {
+        let scale = Int::one().shl(bits);
+        let p = [
+            Int::from(2 - s) * &scale + Int::from(k),
+            Int::from(2 * s) * &scale,
+            Int::zero(),
+        ];
+        let q = [Int::from(2) * &scale, Int::zero(), Int::zero()];
+        kernel.curve(&p, &q).expect("a denominator")
+    }
+
+    /// A cluster that only the finest frame tells apart: once there is one, nothing is seen from a coarser one first.
+    #[test]
+    fn the_finest_frame_is_asked_first() {
+        let mut kernel = Kernel::default();
+        let k = &mut kernel;
+        let lines: Vec<(i64, i64, CurveId)> = (0..12)
+            .map(|i| {
+                let (s, h) = (3 * i - 17, i * i % 7);
+                (s, h, line(k, 700, s, h))
+            })
+            .collect();
+        // Each with the one before it: at −Δh/Δs, in units of 2⁻⁷⁰¹.
+        let mut known: Vec<(Rat, NumId)> = Vec::new();
+        for (i, pair) in lines.windows(2).enumerate() {
+            let ((s, h, c), (r, g, d)) = (pair[0], pair[1]);
+            let mut found = Vec::new();
+            k.crossings(c, d, (0.0, 1.0), &[], &mut found);
+            assert_eq!(found.len(), 1);
+            let place = Rat::frac(g - h, s - r);
+            for (other, y) in &known {
+                assert_eq!(k.cmp(found[0], *y), place.cmp(other), "{place} {other}");
+            }
+            known.push((place, found[0]));
+            let coarse = |f: u32, k: &Kernel| k.frames[f as usize].bits == u64::from(LEVELS[0]);
+            let seen = k.framed.keys().filter(|at| coarse(at.1, k)).count();
+            if i == 2 {
+                assert!(seen > 0, "the first ones were seen from a coarse frame");
+            }
+            // The lines of the first two crossings that differ.
+            assert!(seen <= 4, "{seen} lines were seen from a coarse frame");
+        }
+        assert_eq!(k.frames.len(), LEVELS.len(), "one frame a level");
     }
 }

@@ -8,10 +8,11 @@
 
 use super::approx::{Approx, horner};
 use super::frames::{Frame, scaled};
-use super::hash::FastMap;
+use super::hash::{FastMap, WordHasher};
 use super::places::Places;
 use crate::geometry::index::Hull;
 use crate::number::{Algebraic, Int, Poly, Rat};
+use std::hash::{BuildHasher, BuildHasherDefault};
 
 /// A curve t = P(u)/Q(u); equal ids are equal functions.
 pub(crate) type CurveId = u32;
@@ -83,7 +84,8 @@ pub(super) struct Num {
 pub(crate) struct Kernel {
     pub(super) curves: Vec<Curve>,
     curve_ids: FastMap<[i64; 6], CurveId>,
-    big_curve_ids: FastMap<[Int; 6], CurveId>,
+    /// By a hash of the coefficients, or the next free key after it.
+    big_curve_ids: FastMap<u64, CurveId>,
     dens: FastMap<[i64; 3], u32>,
     big_dens: FastMap<[Int; 3], u32>,
     pub(super) nums: Vec<Num>,
@@ -99,7 +101,7 @@ pub(crate) struct Kernel {
     pub(super) frames: Vec<Frame>,
     pub(super) frame_near: FastMap<(u64, usize), u32>,
     pub(super) local: FastMap<NumId, (u32, Approx)>,
-    pub(super) framed: FastMap<(CurveId, u32), (Int, Int)>,
+    pub(super) framed: FastMap<(CurveId, u32), Int>,
     pub(super) beside: FastMap<(CurveId, u32), Option<(Approx, Approx)>>,
     /// Equations of low degree of crossings, where they turned out to have one.
     pub(super) low: FastMap<NumId, [i64; 3]>,
@@ -140,8 +142,12 @@ impl Kernel {
         if let Some(c) = machine(&key) {
             return Ok(self.small_curve(c));
         }
-        if let Some(&id) = self.big_curve_ids.get(&key) {
-            return Ok(id);
+        let mut hash = BuildHasherDefault::<WordHasher>::default().hash_one(&key);
+        while let Some(&id) = self.big_curve_ids.get(&hash) {
+            if matches!(&self.curves[id as usize].exact, Coeffs::Big(c) if **c == key) {
+                return Ok(id);
+            }
+            hash = hash.wrapping_add(1);
         }
         // Long ones are scaled, so that products of two stay within the doubles.
         let bits = key.iter().map(Int::bits).max().unwrap_or(0);
@@ -166,12 +172,12 @@ impl Kernel {
         self.curves.push(Curve {
             p: [a[0], a[1], a[2]],
             q: [a[3], a[4], a[5]],
-            exact: Coeffs::Big(Box::new(key.clone())),
+            exact: Coeffs::Big(Box::new(key)),
             den,
             tiny: false,
             scale,
         });
-        self.big_curve_ids.insert(key, id);
+        self.big_curve_ids.insert(hash, id);
         Ok(id)
     }
 
@@ -304,7 +310,8 @@ impl Kernel {
     /// Whether the curve has no pole between two numbers, ends included.
     pub(crate) fn bounded(&mut self, c: CurveId, l: NumId, r: NumId) -> bool {
         let (a, b) = (self.nums[l as usize].lo, self.nums[r as usize].hi);
-        if self.range(c, a, b).0.is_finite() {
+        let [q0, q1, q2] = self.curves[c as usize].q;
+        if (q1 * q1 - two(two(q0 * q2))).sign() == Some(-1) || self.range(c, a, b).0.is_finite() {
             return true;
         }
         let (_, q) = self.polys(c);
@@ -498,21 +505,32 @@ fn lowest_terms(p: Poly, q: Poly) -> (Poly, Poly) {
 
 /// Divides by the common divisor, and makes the last one of them that is not zero positive.
 fn primitive<const N: usize>(c: &mut [Int; N]) {
+    // Numbers scaled by a power of two are short without it.
+    let zeros: [u64; N] = std::array::from_fn(|i| c[i].trailing_zeros().unwrap_or(0));
+    let without;
+    let (odd, two) = if zeros.iter().any(|&z| z >= 64) {
+        without = std::array::from_fn(|i| c[i].shr(zeros[i]));
+        let given = zeros.iter().zip(c.iter()).filter(|p| !p.1.is_zero());
+        (&without, given.map(|p| *p.0).min().unwrap_or(0))
+    } else {
+        (&*c, 0)
+    };
     // The shortest first: mostly two of them have no common divisor. Equal ones are one.
     let mut order: [usize; N] = std::array::from_fn(|i| i);
-    order.sort_unstable_by_key(|&i| c[i].bits());
+    order.sort_unstable_by_key(|&i| odd[i].bits());
     let mut content = Int::zero();
     let mut last = None;
     for i in order {
-        if last.is_some_and(|j: usize| c[j] == c[i]) {
+        if last.is_some_and(|j: usize| odd[j] == odd[i]) {
             continue;
         }
         last = Some(i);
-        content = content.gcd(&c[i]);
+        content = content.gcd(&odd[i]);
         if content.is_one() {
             break;
         }
     }
+    let mut content = content.shl(two);
     if content.is_zero() {
         return;
     }

@@ -17,10 +17,13 @@
 mod approx;
 mod bands;
 mod boundary;
+mod cluster;
 mod compare;
 mod cylinder;
 mod frames;
+mod gap;
 mod hash;
+mod hulls;
 mod island;
 mod isolate;
 mod item;
@@ -35,6 +38,7 @@ mod region;
 mod run;
 mod stops;
 mod trace;
+mod windows;
 
 pub use boundary::Found;
 pub(crate) use boundary::{Boundary, Glue, Strip, Way, boundary};

@@ -8,7 +8,7 @@
 //! singular points; the quotients are exact because the common root is.)
 
 use super::approx::Approx;
-use super::compare::Core;
+use super::cluster::{Cluster, Core};
 use super::isolate::bernstein;
 use super::item::{Carrier, Item, NONE};
 use super::kernel::{CurveId, Kernel, NumId, in_parts};
@@ -36,11 +36,15 @@ pub(super) struct Pencil {
     /// The members there.
     tree: Tree,
     count: usize,
+    /// Whether all of them are lines in the chart, so that what hulls do not tell apart meets.
+    pub(super) straight: bool,
+    /// How its members pass one another within the core, if it has one.
+    pub(super) cluster: Option<Cluster>,
     /// The index of all others, if this is an outermost pencil and its members are a large part of all items.
     pub(super) rest: Option<Tree>,
 }
 
-/// Into how many pieces each member is cut for the index.
+/// Into how many pieces each member that is no line in the chart is cut for the index.
 const PIECES: usize = 2;
 
 /// A curve in the plane of a chart: a cubic over a quadratic.
@@ -50,6 +54,12 @@ struct BlownUp {
 }
 
 impl BlownUp {
+    /// Whether it is a line.
+    fn straight(&self) -> bool {
+        let is_zero = |c: &Approx| c.sign() == Some(0);
+        self.below[1..].iter().all(is_zero) && self.top[2..].iter().all(is_zero)
+    }
+
     /// A hull over [a, b].
     fn hull(&self, a: f64, b: f64) -> Hull {
         let over = |f: &[Approx; 5], a, b| bernstein(&f[..4], a, b);
@@ -114,19 +124,14 @@ impl Pencil {
     /// pencil there.
     pub(super) fn crowd_in(&self, a: f64, b: f64) -> Option<usize> {
         let core = self.chart.core?;
-        let (from, to) = (core.middle - core.half, core.middle + core.half);
+        let (from, to) = core.range();
         // One rounding further out.
         (from.next_down() <= b && a <= to.next_up()).then_some(self.count)
     }
 
     /// The part of the axis just outside of which something may be asked again.
     pub(super) fn crowded(&self) -> Option<(f64, f64)> {
-        let core = self.chart.core?;
-        let (from, to) = (core.middle - core.half, core.middle + core.half);
-        Some((
-            from.next_down().next_down().next_down(),
-            to.next_up().next_up().next_up(),
-        ))
+        Some(self.chart.core?.crowded())
     }
 
     /// Calls `found` with the members that may meet a curve over [a, b] beside the point.
@@ -230,12 +235,12 @@ impl Tracer<'_> {
     }
 
     /// Makes a pencil of items that pass near one another near `middle`, in a window too small to be halved.
-    pub(super) fn gather_cluster(&mut self, item: u32, middle: f64, window: f64, near: &[u32]) {
+    pub(super) fn gather_cluster(&mut self, item: u32, middle: NumId, window: f64, near: &[u32]) {
         let Carrier::Graph(reference) = self.items[item as usize].carrier else {
             return;
         };
         let core = Core {
-            middle,
+            middle: self.k.enclosure(middle).0,
             half: window,
         };
         let mut members: Vec<u32> = near.to_vec();
@@ -249,7 +254,9 @@ impl Tracer<'_> {
             at: Vec::new(),
             core: Some(core),
         };
-        self.add_pencil(chart, &members, NONE);
+        let id = self.add_pencil(chart, &members, NONE);
+        let cluster = Cluster::new(self.k, self.items, core, middle, members);
+        self.pencils[id as usize].cluster = Some(cluster);
     }
 
     /// Makes a pencil of members of another one, or of items that are in none.
@@ -265,6 +272,7 @@ impl Tracer<'_> {
             .get(parent as usize)
             .map_or(id, |parent| parent.root);
         let mut entries = Vec::with_capacity(PIECES * members.len());
+        let mut straight = true;
         for &item in members {
             let Item { carrier, l, r, .. } = self.items[item as usize];
             let Carrier::Graph(c) = carrier else {
@@ -272,8 +280,10 @@ impl Tracer<'_> {
             };
             self.pencil_of[item as usize] = id;
             let (a, b) = (self.k.enclosure(l).0, self.k.enclosure(r).1);
-            let pieces = if (b - a).is_finite() { PIECES } else { 1 };
             let blown_up = chart.blow_up(self.k, c);
+            straight &= blown_up.straight();
+            let cut = (b - a).is_finite() && !blown_up.straight();
+            let pieces = if cut { PIECES } else { 1 };
             let mut from = a;
             for p in 1..=pieces {
                 let to = if p == pieces {
@@ -298,6 +308,8 @@ impl Tracer<'_> {
             root,
             tree: Tree::new(entries),
             count: members.len(),
+            straight,
+            cluster: None,
             rest,
         });
         id

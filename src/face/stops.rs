@@ -1,19 +1,13 @@
 //! Where a walk may stop: the vertices along an item, found only where the walk passes.
 //!
-//! The idea: an item's range is halved into windows, lazily, until few others may meet it inside one; then all
-//! that do are found, sorted and named. So a walk that uses a short end of a long arc pays for what is near that
-//! end. The limit grows with the square of the depth: about a common point of many arcs no
-//! window is ever empty, and halving must end there too. (Where many are known to pass near one another, that part
-//! is cut out and not halved.)
+//! The idea: all that meet an item inside one of its windows (`windows.rs`) are found, sorted and named at once.
 //!
 //! A vertex knows all its arcs once its window is made, since each of them meets the item there.
 
-use super::bands::Bands;
 use super::item::{Carrier, Item, NONE, Place, Point};
 use super::kernel::{CurveId, NumId};
-use super::pencil::Pencil;
 use super::trace::Tracer;
-use crate::geometry::index::Hull;
+use super::windows::{Cut, Leaf, Window};
 use std::cmp::Ordering;
 
 /// What another item does on this one.
@@ -57,56 +51,8 @@ impl Vertex {
     }
 }
 
-/// A part of an item's range, `to` excluded unless it is the item's end. Item i's whole range is window i.
-#[derive(Clone, Copy)]
-pub(super) struct Window {
-    pub(super) from: f64,
-    pub(super) to: f64,
-    /// Its two halves, where it was halved.
-    kids: u32,
-    stops: u32,
-    stop_count: u32,
-}
-
-impl Window {
-    pub(super) fn new(from: f64, to: f64) -> Window {
-        Window {
-            from,
-            to,
-            kids: NONE,
-            stops: NONE,
-            stop_count: 0,
-        }
-    }
-}
-
-/// How many others a window at this depth may have before it is halved.
-fn crowd(depth: usize) -> usize {
-    if depth < DEEPEST {
-        16 + depth * depth / 8
-    } else {
-        usize::MAX
-    }
-}
-
-/// Past this many halvings a window takes whatever is there.
-const DEEPEST: usize = 24;
-
 /// More hits than this are brought roughly into order first.
 const MANY: usize = 24;
-
-/// How many items a search may find in vain, on average, before bands are made; and how many in all before that
-/// is asked.
-const VAIN: u64 = 16;
-const PATIENT: u64 = 4096;
-
-/// A window whose stops are known, and those as a range of `stops`.
-#[derive(Clone, Copy)]
-pub(super) struct Leaf {
-    pub(super) window: u32,
-    pub(super) from: usize,
-    pub(super) to: usize,
-}
 
 impl Tracer<'_> {
     // ----- vertices -----
@@ -190,232 +136,13 @@ impl Tracer<'_> {
         }
     }
 
-    // ----- windows -----
-
-    /// The leaf of an item's windows on the path that `right` tells at each cut; made when first asked for.
-    fn leaf(&mut self, item: u32, mut right: impl FnMut(&mut Self, f64) -> bool) -> Leaf {
-        let (mut w, mut depth) = (item, 0);
-        loop {
-            let window = self.windows[w as usize];
-            if window.kids != NONE {
-                let mid = self.windows[window.kids as usize].to;
-                w = window.kids + u32::from(right(self, mid));
-                depth += 1;
-                continue;
-            }
-            if window.stops != NONE {
-                let from = window.stops as usize;
-                return Leaf {
-                    window: w,
-                    from,
-                    to: from + window.stop_count as usize,
-                };
-            }
-            self.open(item, w, depth);
-        }
-    }
-
-    /// The leaf that holds a number of the item's range.
-    pub(super) fn leaf_at(&mut self, item: u32, x: NumId) -> Leaf {
-        self.leaf(item, |t, mid| t.k.cmp_double(x, mid).is_ge())
-    }
-
-    /// The leaf at the low end of an item, or at its high end.
-    pub(super) fn leaf_at_end(&mut self, item: u32, high: bool) -> Leaf {
-        self.leaf(item, |_, _| high)
-    }
-
-    /// The leaf next to another one.
-    fn leaf_beside(&mut self, item: u32, leaf: Leaf, forward: bool) -> Leaf {
-        let Window { from, to, .. } = self.windows[leaf.window as usize];
-        debug_assert!(
-            if forward {
-                to < self.windows[item as usize].to
-            } else {
-                from > self.windows[item as usize].from
-            },
-            "an arc ends in a stop"
-        );
-        self.leaf(item, |_, mid| if forward { to >= mid } else { from > mid })
-    }
-
-    /// Halves a window, or finds its stops.
-    fn open(&mut self, item: u32, w: u32, depth: usize) {
-        let Window { from, to, .. } = self.windows[w as usize];
-        let me = self.items[item as usize];
-        // What is crowded is cut out in two steps instead of ever smaller halves around it.
-        let mid = match self.pencil(item).and_then(|p| p.1.crowded()) {
-            Some((a, _)) if from < a && a < to => a,
-            Some((_, b)) if from < b && b < to => b,
-            Some((a, b)) if a <= from && to <= b => to,
-            _ => from + (to - from) * 0.5,
-        };
-        let (hull, most) = match me.carrier {
-            Carrier::Graph(c) => (
-                self.k.hull(c, from, to),
-                if from < mid && mid < to && self.parts(&me, mid) {
-                    crowd(depth)
-                } else {
-                    usize::MAX
-                },
-            ),
-            Carrier::Vertical(..) => (Hull::boxed(me.bounds), usize::MAX),
-        };
-        let mut near = std::mem::take(&mut self.near);
-        if self.gather(item, &hull, most, &mut near) {
-            self.stop(item, w, &near);
-            // As many different points in so small a window: not one point that many pass through.
-            let Window {
-                stops, stop_count, ..
-            } = self.windows[w as usize];
-            if depth >= DEEPEST
-                && stop_count as usize > crowd(DEEPEST - 1)
-                && self.pencil(item).is_none()
-            {
-                let middle = self.stops[(stops + stop_count / 2) as usize];
-                let middle = self.vertices[middle as usize].at.x;
-                self.gather_cluster(item, self.k.enclosure(middle).0, to - from, &near);
-            }
-        } else {
-            let kids = self.windows.len() as u32;
-            self.windows.push(Window::new(from, mid));
-            self.windows.push(Window::new(mid, to));
-            self.windows[w as usize].kids = kids;
-        }
-        self.near = near;
-    }
-
-    /// Whether a cut surely lies between the ends of an item, l < mid ≤ r. The ends belong to its outermost
-    /// windows without a test, so whatever else happens at an end must belong there too: the item that is
-    /// hardly wider than the enclosures of its ends cannot be halved.
-    fn parts(&self, item: &Item, mid: f64) -> bool {
-        self.k.enclosure(item.l).1 < mid && mid <= self.k.enclosure(item.r).0
-    }
-
-    /// The items that may meet this one inside a hull; false as soon as there are more than `most`.
-    fn gather(&mut self, item: u32, hull: &Hull, most: usize, near: &mut Vec<u32>) -> bool {
-        near.clear();
-        let range = (hull.bounds[0], hull.bounds[1]);
-        let mut pencil = self.pencil(item);
-        if let Some(crowd) = pencil.and_then(|p| p.1.crowd_in(range.0, range.1)) {
-            if crowd > most {
-                return false;
-            }
-            pencil = None;
-        }
-        let innermost = pencil.map_or(NONE, |p| p.0);
-        let outermost = pencil.map_or(NONE, |p| p.1.root);
-        self.serial += 1;
-        let serial = self.serial;
-        self.stamp[item as usize] = serial;
-        let mut stamp = std::mem::take(&mut self.stamp);
-        let (items, k) = (self.items, &*self.k);
-        let me = &items[item as usize];
-        let busy = self.busy.get(&item);
-        let (mut few, mut tests, mut wasted) = (true, 0, 0);
-        let mut consider = |b: u32| {
-            if stamp[b as usize] == serial {
-                return true;
-            }
-            stamp[b as usize] = serial;
-            tests += 1;
-            let other = &items[b as usize];
-            // Edges of one colour meet at common vertices only.
-            if me.color != 0 && other.color == me.color {
-                return true;
-            }
-            if let (Carrier::Graph(c), Carrier::Graph(d)) = (me.carrier, other.carrier)
-                && c != d
-            {
-                let lo = hull.bounds[0].max(k.enclosure(other.l).0);
-                let hi = hull.bounds[1].min(k.enclosure(other.r).1);
-                let vain = lo > hi
-                    || match self.pencils.get(self.common_pencil(item, b) as usize) {
-                        Some(shared) => k.miss_beside(c, d, lo, hi, shared.known()),
-                        None => {
-                            k.miss(c, d, lo, hi)
-                                || busy.is_some_and(|mine| self.only_there(mine, b, (c, d), lo, hi))
-                        }
-                    };
-                if vain {
-                    wasted += 1;
-                    return true;
-                }
-            }
-            near.push(b);
-            few = near.len() <= most;
-            few
-        };
-        let (mut inner, mut p) = (NONE, innermost);
-        while let (Some(pencil), Carrier::Graph(c)) = (self.pencils.get(p as usize), me.carrier) {
-            pencil.query(k, c, range, |b| {
-                inner != NONE && self.in_pencil(b, inner) || consider(b)
-            });
-            (inner, p) = (p, pencil.parent);
-        }
-        let outer = self.pencils.get(outermost as usize);
-        if let Some(Pencil {
-            rest: Some(rest), ..
-        }) = outer
-        {
-            rest.query(hull, &mut consider);
-        } else {
-            let (bands, entries) = (&self.bands, self.tree.entries());
-            let wanted = |at: usize, node: &Hull| {
-                !node.apart(hull)
-                    && match me.carrier {
-                        Carrier::Graph(c) if at >= entries && !bands.is_empty() => {
-                            let from = node.bounds[0].max(hull.bounds[0]);
-                            let to = node.bounds[1].min(hull.bounds[1]);
-                            !bands.apart(k, at, c, from, to)
-                        }
-                        _ => true,
-                    }
-            };
-            self.tree.descend(wanted, |b| {
-                outermost != NONE && self.in_pencil(b, outermost) || consider(b)
-            });
-        }
-        self.stamp = stamp;
-        self.tests += tests;
-        self.wasted += wasted;
-        if self.bands.is_empty() && self.wasted > VAIN * u64::from(serial) + PATIENT {
-            self.bands = Bands::new(self.k, self.items, &self.tree);
-        }
-        few
-    }
-
-    /// Whether an item through the vertices `mine` surely meets another over [lo, hi] only in those that both
-    /// pass through.
-    fn only_there(
-        &self,
-        mine: &[u32],
-        other: u32,
-        (c, d): (CurveId, CurveId),
-        lo: f64,
-        hi: f64,
-    ) -> bool {
-        let Some(theirs) = self.busy.get(&other) else {
-            return false;
-        };
-        let known: Vec<(NumId, usize)> = mine
-            .iter()
-            .filter(|v| theirs.contains(v))
-            .map(|&v| {
-                let x = self.vertices[v as usize].at.x;
-                (x, self.k.contact(c, d, x))
-            })
-            .collect();
-        !known.is_empty() && self.k.miss_beside(c, d, lo, hi, &known)
-    }
-
     /// The remembered vertices inside an item, as hits on a window.
     fn known_hits(
         &mut self,
         item: u32,
         me: &Item,
-        (first, from): (bool, f64),
-        (last, to): (bool, f64),
+        (first, from): (bool, Cut),
+        (last, to): (bool, Cut),
         hits: &mut Vec<Hit>,
     ) {
         let Some(vertices) = self.busy.get(&item).cloned() else {
@@ -426,8 +153,8 @@ impl Tracer<'_> {
             if matches!(me.carrier, Carrier::Graph(_))
                 && self.find(me.vl) != v
                 && self.find(me.vr) != v
-                && (first || self.k.cmp_double(at.x, from).is_ge())
-                && (last || self.k.cmp_double(at.x, to).is_lt())
+                && (first || self.cmp_cut(at.x, from).is_ge())
+                && (last || self.cmp_cut(at.x, to).is_lt())
             {
                 hits.push(Hit {
                     x: at.x,
@@ -442,7 +169,7 @@ impl Tracer<'_> {
     }
 
     /// Finds the stops of a window, in order from low to high.
-    fn stop(&mut self, item: u32, w: u32, near: &[u32]) {
+    pub(super) fn stop(&mut self, item: u32, w: u32, near: &[u32]) {
         let Window { from, to, .. } = self.windows[w as usize];
         let me = self.items[item as usize];
         let whole = self.windows[item as usize];
@@ -484,8 +211,8 @@ impl Tracer<'_> {
             }
             for cross in s..e {
                 let z = self.crosses[cross as usize];
-                let inside = (first || self.k.cmp_double(z.x, from).is_ge())
-                    && (last || self.k.cmp_double(z.x, to).is_lt());
+                let inside = (first || self.cmp_cut(z.x, from).is_ge())
+                    && (last || self.cmp_cut(z.x, to).is_lt());
                 if inside {
                     hits.push(Hit {
                         x: z.x,

@@ -11,14 +11,18 @@
 
 use super::approx::Approx;
 use super::bands::Bands;
+use super::cluster::Fan;
 use super::hash::FastMap;
+pub(crate) use super::hulls::hull_of;
+use super::hulls::index;
 use super::item::Place;
 pub(crate) use super::item::{Carrier, Comp, Item, NONE, Point};
 use super::kernel::{CurveId, Kernel, NumId};
 use super::meet::Cross;
 use super::pencil::Pencil;
-use super::stops::{Hit, Link, Vertex, Window};
-use crate::geometry::index::{Bounds, Hull, Tree};
+use super::stops::{Hit, Link, Vertex};
+use super::windows::{Cut, Window};
+use crate::geometry::index::Tree;
 use std::cmp::Ordering;
 
 /// The direction in which a germ leaves its vertex.
@@ -86,6 +90,8 @@ pub(crate) struct OnArc(pub(crate) u32);
 struct Ray {
     /// The item hit, and a curve through the point.
     below: Option<(u32, CurveId)>,
+    /// Whether the ray hits it inside, and no other item there.
+    alone: bool,
     /// An item through the ray's own begin that does not begin there itself.
     through: Option<u32>,
     /// An item that begins there.
@@ -117,6 +123,8 @@ pub(crate) struct Tracer<'a> {
     /// Those that pass through one such vertex, blown up there, and to which of them an item belongs.
     pub(super) pencils: Vec<Pencil>,
     pub(super) pencil_of: Vec<u32>,
+    /// What is known of items within clusters.
+    pub(super) fans: Vec<Fan>,
     /// Pairs tested for a meeting, and how many may be before the walk is given up.
     pub(super) tests: u64,
     pub(super) budget: u64,
@@ -128,6 +136,9 @@ pub(crate) struct Tracer<'a> {
     pub(super) near: Vec<u32>,
     pub(super) numbers: Vec<NumId>,
     pub(super) edges: Vec<Edge>,
+    /// The edges below the face on each curve, of so many edges.
+    edges_on: FastMap<CurveId, Vec<u32>>,
+    edges_listed: usize,
     pub(super) cycles: Vec<Cycle>,
     /// The half-edges in the order walked: twice the edge, one more if against its direction.
     pub(super) order: Vec<u32>,
@@ -147,7 +158,12 @@ impl<'a> Tracer<'a> {
         let tree = index(k, items);
         let windows = items
             .iter()
-            .map(|i| Window::new(k.enclosure(i.l).0, k.enclosure(i.r).1))
+            .map(|i| {
+                Window::new(
+                    Cut::plain(k.enclosure(i.l).0),
+                    Cut::plain(k.enclosure(i.r).1),
+                )
+            })
             .collect();
         let mut t = Tracer {
             k,
@@ -169,6 +185,7 @@ impl<'a> Tracer<'a> {
             busy: FastMap::default(),
             pencils: Vec::new(),
             pencil_of: vec![NONE; items.len()],
+            fans: Vec::new(),
             tests: 0,
             budget: u64::MAX,
             wasted: 0,
@@ -177,6 +194,8 @@ impl<'a> Tracer<'a> {
             near: Vec::new(),
             numbers: Vec::new(),
             edges: Vec::new(),
+            edges_on: FastMap::default(),
+            edges_listed: 0,
             cycles: Vec::new(),
             order: Vec::new(),
             touched: vec![false; comps.len()],
@@ -476,10 +495,34 @@ impl<'a> Tracer<'a> {
         let Some((item, _)) = ray.below else {
             return self.unbounded;
         };
-        self.touched[self.items[item as usize].comp as usize]
-            && self
-                .germ_below(item, p.x, false)
-                .is_some_and(|(_, g)| self.germs[g].open)
+        if !self.touched[self.items[item as usize].comp as usize] {
+            return false;
+        }
+        if let Carrier::Graph(c) = self.items[item as usize].carrier
+            && ray.alone
+        {
+            return self.opens_above(c, p.x);
+        }
+        self.germ_below(item, p.x, false)
+            .is_some_and(|(_, g)| self.germs[g].open)
+    }
+
+    /// Whether the face lies just above a curve over a number that is no vertex's, as far as its edges were traced.
+    fn opens_above(&mut self, c: CurveId, x: NumId) -> bool {
+        for (at, e) in self.edges.iter().enumerate().skip(self.edges_listed) {
+            if let Carrier::Graph(c) = self.items[e.item as usize].carrier
+                && e.above
+            {
+                self.edges_on.entry(c).or_default().push(at as u32);
+            }
+        }
+        self.edges_listed = self.edges.len();
+        let edges = self.edges_on.get(&c).map_or(&[][..], |e| &e[..]);
+        edges.iter().any(|&e| {
+            let Edge { low, high, .. } = self.edges[e as usize];
+            let [low, high] = [low, high].map(|v| self.vertices[v as usize].at.x);
+            self.k.cmp(low, x).is_lt() && self.k.cmp(x, high).is_lt()
+        })
     }
 
     /// What lies next below a point.
@@ -494,7 +537,7 @@ impl<'a> Tracer<'a> {
         };
         let floor = std::cell::Cell::new(f64::NEG_INFINITY);
         let mut best: Option<(u32, CurveId, Approx)> = None;
-        let (mut through, mut beside) = (None, None);
+        let (mut through, mut beside, mut alone) = (None, None, true);
         {
             tree.descend(
                 |_, n| {
@@ -518,14 +561,16 @@ impl<'a> Tracer<'a> {
                         _ => self.k.cmp_at(high, p.c, p.x),
                     };
                     if order.is_lt() {
-                        let higher = match best {
-                            None => true,
+                        let order = match best {
+                            None => Ordering::Greater,
                             Some((_, o, t)) => match (at - t).sign() {
-                                Some(s) if s != 0 => s > 0,
-                                _ => self.k.cmp_at(high, o, p.x).is_gt(),
+                                Some(s) if s != 0 => s.cmp(&0),
+                                _ => self.k.cmp_at(high, o, p.x),
                             },
                         };
-                        if higher {
+                        alone &= !order.is_eq();
+                        if order.is_gt() {
+                            alone = place == Place::Inside;
                             best = Some((i, high, at));
                             floor.set(if at.lo().is_nan() {
                                 f64::NEG_INFINITY
@@ -552,6 +597,7 @@ impl<'a> Tracer<'a> {
         self.tree = tree;
         Ray {
             below: best.map(|(i, c, _)| (i, c)),
+            alone,
             through,
             beside,
         }
@@ -604,93 +650,3 @@ impl<'a> Tracer<'a> {
 
 /// Vertices with more germs than this have them in a map too.
 const MANY: usize = 16;
-
-/// Fills in the boxes of items, cuts them into pieces, more where they are long, about two an item in all, and
-/// packs the hulls of the pieces.
-fn index(k: &Kernel, items: &mut [Item]) -> Tree {
-    for item in items.iter_mut() {
-        if item.bounds[0] > item.bounds[1] {
-            item.bounds = box_of(k, item);
-        }
-    }
-    // Long compared with what lies between the outer tenths of all arcs.
-    let extent = |axis: usize| {
-        let mut ends: Vec<f64> = items
-            .iter()
-            .flat_map(|i| [i.bounds[axis], i.bounds[axis + 1]])
-            .filter(|x| x.is_finite())
-            .collect();
-        let n = ends.len();
-        if n < 2 {
-            return (0.0, 0.0, 1.0);
-        }
-        let (i, j) = (n / 10, n - 1 - n / 10);
-        let lo = *ends.select_nth_unstable_by(i, f64::total_cmp).1;
-        let hi = *ends.select_nth_unstable_by(j, f64::total_cmp).1;
-        (lo, hi, if hi > lo { 1.0 / (hi - lo) } else { 0.0 })
-    };
-    let (u, t) = (extent(0), extent(2));
-    let length = |b: &Bounds| {
-        let part =
-            |lo: f64, hi: f64, e: (f64, f64, f64)| (hi.min(e.1) - lo.max(e.0)).max(0.0) * e.2;
-        part(b[0], b[1], u) + part(b[2], b[3], t)
-    };
-    let total: f64 = items.iter().map(|i| length(&i.bounds)).sum();
-    let per = if total > 0.0 {
-        items.len() as f64 / total
-    } else {
-        0.0
-    };
-    let mut entries = Vec::with_capacity(items.len() * 2);
-    for (i, item) in items.iter().enumerate() {
-        let b = &item.bounds;
-        let Carrier::Graph(c) = item.carrier else {
-            entries.push((Hull::boxed(*b), i as u32));
-            continue;
-        };
-        // A range past the doubles cannot be cut into equal parts.
-        let n = if (b[1] - b[0]).is_finite() {
-            1 + ((length(b) * per) as usize).min(31)
-        } else {
-            1
-        };
-        let mut from = b[0];
-        for p in 1..=n {
-            let to = if p == n {
-                b[1]
-            } else {
-                (b[0] + (b[1] - b[0]) * (p as f64 / n as f64)).clamp(from, b[1])
-            };
-            entries.push((k.hull(c, from, to), i as u32));
-            from = to;
-        }
-    }
-    Tree::new(entries)
-}
-
-/// A hull of a whole item.
-pub(crate) fn hull_of(k: &Kernel, item: &Item) -> Hull {
-    match item.carrier {
-        Carrier::Graph(c) => k.hull(c, k.enclosure(item.l).0, k.enclosure(item.r).1),
-        Carrier::Vertical(..) => Hull::boxed(box_of(k, item)),
-    }
-}
-
-fn box_of(k: &Kernel, item: &Item) -> Bounds {
-    let (a, b) = (k.enclosure(item.l).0, k.enclosure(item.r).1);
-    match item.carrier {
-        Carrier::Graph(c) => {
-            let (lo, hi) = k.range(c, a, b);
-            [a, b, lo, hi]
-        }
-        Carrier::Vertical(lo, hi) => {
-            let (lo, hi) = (k.height(lo, item.l), k.height(hi, item.l));
-            let known = [lo, hi].iter().all(|t| t.v.is_finite() && t.e.is_finite());
-            if known {
-                [a, b, lo.lo().min(hi.lo()), lo.hi().max(hi.hi())]
-            } else {
-                [a, b, f64::NEG_INFINITY, f64::INFINITY]
-            }
-        }
-    }
-}
