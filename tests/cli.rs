@@ -431,3 +431,36 @@ fn a_folder_is_searched_for_scenes() {
     let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(found["scenes"].as_array().unwrap().len(), 1);
 }
+
+/// A limit that comes while a large slice is built is no mistake in the arguments.
+#[test]
+fn a_limit_within_a_slice_is_told() {
+    let n = 3000;
+    let comb: Vec<String> = (0..=n)
+        .map(|k| {
+            format!(
+                "[\"{k}/10\", \"{}\"]",
+                if k % 2 == 0 { "0" } else { "-1/2" }
+            )
+        })
+        .collect();
+    let scene = format!(
+        "[scene]\nname = \"comb\"\n[[obstacle]]\nname = \"comb\"\nvertices = [[\"0\", \"-2\"], [\"300\", \"-2\"], {}]\n\
+         [[pawl]]\nname = \"p\"\nhinge = [\"0\", \"5\"]\nvertices = [[\"0\", \"5\"], [\"3\", \"1\"], [\"16/5\", \"4/5\"]]\n\
+         [[motion]]\nvelocity = [\"10\", \"0\"]\nduration = \"30\"\n",
+        comb.into_iter().rev().collect::<Vec<_>>().join(", ")
+    );
+    let path = std::env::temp_dir().join(format!("snapfit-comb-{}.toml", std::process::id()));
+    std::fs::write(&path, scene).unwrap();
+    let file = path.to_str().unwrap();
+    let output = snapfit(&["render", file, "--slice", "--svg", "--time-limit", "0"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("before the slice was built"), "{said}");
+    let output = snapfit(&["simulate", file, "--time-limit", "0"]);
+    assert_eq!(output.status.code(), Some(3));
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["outcome"]["kind"], "undecided");
+    assert_eq!(document["ledger"]["phases"][0]["half_edges"], 0);
+    std::fs::remove_file(path).unwrap();
+}

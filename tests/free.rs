@@ -19,7 +19,7 @@ use snapfit::motion::{Angle, EventKind, Method, Options, Seen, simulate, slices}
 use snapfit::number::Rat;
 use snapfit::report::slice::SliceDocument;
 use snapfit::scene::{Motion, Scene};
-use snapfit::slice::{Configuration, Free, Shape, Slice, Whereabouts};
+use snapfit::slice::{Configuration, Free, Shape, Slice, Time, Whereabouts};
 use std::collections::HashMap;
 use std::rc::Rc;
 use world::rng::Rng;
@@ -299,6 +299,56 @@ fn intervals_are_what_the_polygons_say() {
     });
     eprintln!("{found} intervals, {gaps} gaps");
     assert!(found > 50 && gaps > 20);
+}
+
+/// At the start of a phase, and wherever an arc's end falls on a rational instant, the intervals just after it are those
+/// a little later, before any other arc begins or ends: as many, and as near as the time is.
+#[test]
+fn intervals_right_after_an_instant_are_those_a_little_later() {
+    let (mut starts, mut joints, mut whole) = (0, 0, 0);
+    each(count(20_000), 15_000_000, &mut |seed, _, seen| {
+        let f = seen.free.as_ref().unwrap();
+        let mut times = vec![(Rat::zero(), true)];
+        let ends = (0..f.vertices().len() as u32).filter_map(|v| f.place(v).2.as_rat().cloned());
+        times.extend(ends.take(4).map(|t| (t, false)));
+        for (t, start) in times {
+            if t >= *f.duration() {
+                continue;
+            }
+            let little = &t + &(f.duration() - &t) * &Rat::frac(1, 1 << 40);
+            let between = (0..f.vertices().len() as u32).any(|v| {
+                let (from, to) = (Time::from(t.clone()), Time::from(little.clone()));
+                f.cmp_time(v, &from).is_gt() && f.cmp_time(v, &to).is_le()
+            });
+            if between {
+                continue;
+            }
+            if start {
+                starts += 1;
+            } else {
+                joints += 1;
+            }
+            let edges = |t: &Rat| {
+                f.intervals(&seen.slice, t)
+                    .map(|l| l.iter().map(|i| (i.low.0, i.high.0)).collect::<Vec<_>>())
+            };
+            let (now, then) = (edges(&t), edges(&little));
+            whole += u32::from(now.is_none());
+            assert_eq!(now, then, "seed {seed}, t = {t}");
+            // And by one orientation at a time a little later.
+            let c = Configuration {
+                t: little.clone(),
+                ..draw(&mut Rng::new(seed), &seen.slice)
+            };
+            if now.is_none() {
+                assert_eq!(f.locate(&c), Whereabouts::Inside, "seed {seed}, t = {t}");
+            } else if now.is_some_and(|n| n.is_empty()) {
+                assert_ne!(f.locate(&c), Whereabouts::Inside, "seed {seed}, t = {t}");
+            }
+        }
+    });
+    eprintln!("{starts} starts, {joints} other instants, {whole} with the whole circle free");
+    assert!(starts > 20 && whole > 5);
 }
 
 /// An interval that ends on the cut, at a level whose arc is named in the other chart.

@@ -102,11 +102,12 @@ fn asked(scene: &Scene, seen: &Seen) -> Value {
     let mut d = SliceDocument::new(scene, seen);
     let t = &seen.slice.frame.duration * &Rat::frac(2, 7);
     for u in [Rat::zero(), Rat::frac(-9, 8)] {
-        d.reach(seen, &t, &u);
+        d.reach(seen, &t, Some(&u));
         if seen.may_start(scene, &u) {
             d.run(scene, seen, &u);
         }
     }
+    d.reach(seen, &t, None);
     d.intervals(seen, &t);
     serde_json::to_value(&d).unwrap()
 }

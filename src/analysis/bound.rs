@@ -118,7 +118,7 @@ fn decimal(x: &Rat, significant: u32) -> String {
     }
     let significant = significant.max(1);
     if significant <= 15
-        && let Some(x) = x.nearest_f64()
+        && let Some(x) = x.nearest_f64().filter(|x| x.is_normal())
     {
         return digits(x, significant as usize);
     }
@@ -134,6 +134,9 @@ fn decimal(x: &Rat, significant: u32) -> String {
         e -= 1;
     }
     let places = i64::from(significant) - 1 - e;
+    if e.unsigned_abs() > 300 {
+        return scientific(x, significant, e, &power(places));
+    }
     let scaled = x.abs() * power(places) + Rat::frac(1, 2);
     let mut text = scaled.numer().div_rem_floor(scaled.denom()).0.to_string();
     let sign = if x.sign() < 0 { "−" } else { "" };
@@ -148,6 +151,18 @@ fn decimal(x: &Rat, significant: u32) -> String {
     text.insert(text.len() - places, '.');
     let text = text.trim_end_matches('0').trim_end_matches('.');
     format!("{sign}{text}")
+}
+
+/// One far from 1, where 10^e ≤ |x| < 10^(e+1), as a mantissa and a power of ten; `shift` is 10^(significant − 1 − e).
+fn scientific(x: &Rat, significant: u32, e: i64, shift: &Rat) -> String {
+    let scaled = x.abs() * shift + Rat::frac(1, 2);
+    let mut text = scaled.numer().div_rem_floor(scaled.denom()).0.to_string();
+    // 9.99… may round up to ten.
+    let e = e + (text.len() as i64 - i64::from(significant));
+    text.insert(1, '.');
+    let mantissa = text.trim_end_matches('0').trim_end_matches('.');
+    let sign = if x.sign() < 0 { "−" } else { "" };
+    format!("{sign}{mantissa}e{e}").replace('-', "−")
 }
 
 #[cfg(test)]
@@ -184,5 +199,10 @@ mod tests {
         assert_eq!(open.decimal(9), "−1 … 2");
         assert_eq!(decimal(&Rat::frac(-200, 3), 20), "−66.666666666666666667");
         assert_eq!(decimal(&Rat::from(1_000_000), 20), "1000000");
+        let huge = Rat::from(10).pow(400);
+        assert_eq!(decimal(&(&huge * &Rat::frac(-5, 2)), 6), "−2.5e400");
+        assert_eq!(decimal(&huge.recip(), 6), "1e−400");
+        let almost = &huge * &Rat::frac(99_999_999, 10_000_000);
+        assert_eq!(decimal(&almost, 4), "1e401");
     }
 }

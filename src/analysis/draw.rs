@@ -332,16 +332,26 @@ pub fn rose(doc: &ClassifyDocument) -> String {
         let phi = e[1].approx().atan2(e[0].approx());
         page.arrow(at(phi, inner - 14.0), at(phi, outer + 34.0), "#c1121f");
     }
-    let mut x = 28.0;
+    let (mut x, mut y) = (28.0, 601.0);
+    let mut place = |wide: f64| {
+        if x > 28.0 && x + wide > width - 28.0 {
+            (x, y) = (28.0, y + 19.0);
+        }
+        let at = [x, y];
+        x += wide + 22.0;
+        at
+    };
     for verdict in seen {
-        page.rect([x, 590.0, 13.0, 13.0], shade(verdict), RULE);
-        page.text(x + 18.0, 601.0, 12.0, INK, "start", false, verdict);
-        x += 40.0 + text_width(verdict, 12.0);
+        let [x, y] = place(18.0 + text_width(verdict, 12.0));
+        page.rect([x, y - 11.0, 13.0, 13.0], shade(verdict), RULE);
+        page.text(x + 18.0, y, 12.0, INK, "start", false, verdict);
     }
     if !doc.flips.is_empty() || doc.escape.is_some() {
         let red = "red: where the verdict flips, and arrows that get out";
-        page.text(x, 601.0, 12.0, "#c1121f", "start", false, red);
+        let [x, y] = place(text_width(red, 12.0));
+        page.text(x, y, 12.0, "#c1121f", "start", false, red);
     }
+    let more = y - 601.0;
     let notes = [
         "the angle says which way the root is moved from the end of the plan",
         "ring: whole arcs, each proven to hold so firmly, or to get out; pale: got out wherever it was tried",
@@ -350,7 +360,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
     for (k, note) in notes.into_iter().enumerate() {
         page.text(
             28.0,
-            622.0 + 15.0 * k as f64,
+            622.0 + more + 15.0 * k as f64,
             11.0,
             MUTED,
             "start",
@@ -358,7 +368,7 @@ pub fn rose(doc: &ClassifyDocument) -> String {
             note,
         );
     }
-    page.finish(width, height, &doc.scene, &title)
+    page.finish(width, height + more, &doc.scene, &title)
 }
 
 /// Angles round the rose, every 30°, counter-clockwise from x.

@@ -180,6 +180,8 @@ impl ArcFile {
     /// # Errors
     /// With the place of the first thing that is wrong.
     pub fn parse(text: &str) -> Result<ArcFile, ReadError> {
+        // A byte order mark, as some editors write and as scenes may have.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text
             .split('\n')
             .enumerate()
@@ -227,10 +229,8 @@ impl ArcFile {
             });
         }
         if arcs.len() < count {
-            return Err(missing(format!(
-                "{count} arcs announced, {} found",
-                arcs.len()
-            )));
+            let found = arcs.len();
+            return Err(head.error(at, format!("{count} arcs announced, {found} found")));
         }
         Ok(ArcFile { start, arcs })
     }

@@ -47,6 +47,22 @@ pub struct Run<K: Kernel = Filtered> {
 pub(crate) type End<K> = (<K as Kernel>::Time, OutcomeKind, Option<usize>);
 
 impl<K: Kernel> Run<K> {
+    /// A run that a limit stopped before its slice was built.
+    pub(crate) fn late(start: &Angle<K>, touching: &[Contact]) -> Run<K> {
+        let origin = K::Time::of(K::Num::zero());
+        Run {
+            events: Vec::new(),
+            segments: Vec::new(),
+            end: Some((OutcomeKind::Undecided, origin, Vec::new())),
+            angle: start.clone(),
+            probed: start.clone(),
+            touching: touching.to_vec(),
+            degenerate: 0,
+            method: Method::Naive,
+            free: None,
+            faces: FaceCost::default(),
+        }
+    }
     /// How this run of the `pawl`-th pawl may end the plan.
     pub(crate) fn ends_plan(&self, pawl: usize) -> Option<End<K>> {
         let (kind, at, _) = self.end.as_ref()?;
@@ -69,7 +85,7 @@ pub struct Setting<'a, K: Kernel = Filtered> {
     /// The instant at which the plan is over whatever the pawl does (the root collides, or another pawl has
     /// ended it): the orientation there is wanted, and nothing after it is worked out.
     pub probe: Option<&'a K::Time>,
-    /// Asked between events; true ends the run undecided.
+    /// Asked between events and while F is made; true ends the run undecided.
     pub stop: &'a dyn Fn() -> bool,
     /// Which arcs are looked at.
     pub method: Method,

@@ -244,11 +244,19 @@ fn simulate_with<K: Kernel>(
                 Some((slice, free))
             });
             cost.slices += u64::from(turned.is_none());
-            let (slice, known) = turned.unwrap_or_else(|| {
-                let slice = Slice::<K>::new(frame, &shapes[i], &obstacles, limits.as_ref());
-                (Rc::new(slice), None)
+            let made = turned.or_else(|| {
+                let limits = limits.as_ref();
+                let slice = Slice::<K>::unless(frame, &shapes[i], &obstacles, limits, &stop)?;
+                Some((Rc::new(slice), None))
             });
             cost.build += clock.elapsed().as_secs_f64();
+            let Some((slice, known)) = made else {
+                // Too late before anything of this pawl is known but where it starts.
+                let late = Run::late(&angles[i], &touching[i]);
+                over = over.into_iter().chain(late.ends_plan(i)).min();
+                runs.push(late);
+                continue;
+            };
             cost.arcs += slice.arcs().len() as u64;
             if let Some(report) = options.progress {
                 let phases = scene.motions.len();

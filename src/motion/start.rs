@@ -123,7 +123,7 @@ impl<K: Kernel> Runner<'_, K> {
                     Some(f.clone())
                 }
                 None => {
-                    let made = Free::new(self.slice, &at, self.set.face);
+                    let made = Free::unless(self.slice, &at, self.set.face, self.set.stop);
                     made.inspect(|f| self.faces.found(f.found())).map(Rc::new)
                 }
             }

@@ -67,9 +67,19 @@ impl Num {
             }),
         }
     }
-    /// The double, for pictures and tables: infinite past the double range.
+    /// The double, for pictures and tables: infinite past the double range, with the number's sign.
     pub fn approx(&self) -> f64 {
-        self.value.unwrap_or(f64::INFINITY)
+        let below = match &self.exact {
+            Some(Exact::Rational { rational }) => rational.starts_with('-'),
+            Some(Exact::Root { interval, .. }) => interval[0].starts_with('-'),
+            None => false,
+        };
+        let past = if below {
+            f64::NEG_INFINITY
+        } else {
+            f64::INFINITY
+        };
+        self.value.unwrap_or(past)
     }
 }
 

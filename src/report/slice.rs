@@ -4,8 +4,8 @@
 //! start of the phase, as t does in the curves.
 
 use super::json::{
-    ContactDocument, CurveDocument, EventDocument, SegmentDocument, TanHalf, named_contact,
-    run_documents,
+    ContactDocument, CurveDocument, EventDocument, Infinity, SegmentDocument, TanHalf,
+    named_contact, run_documents,
 };
 use super::num::{Num, Numbers};
 use crate::motion::friction::regions;
@@ -128,8 +128,8 @@ pub enum QueryDocument {
         /// When.
         time: Num,
         /// Orientation.
-        tan_half: Num,
-        /// `inside`, `boundary` (in contact) or `outside`.
+        tan_half: TanHalf,
+        /// `inside`, `boundary` (in contact, or at the phase's first or last instant beside F) or `outside`.
         #[schemars(extend("enum" = ["inside", "boundary", "outside"]))]
         answer: &'static str,
     },
@@ -202,9 +202,15 @@ impl SliceDocument {
         }
     }
 
-    /// Asks whether a configuration can be reached.
-    pub fn reach(&mut self, seen: &Seen, t: &Rat, u: &Rat) {
-        let at: Angle = Angle::from_tan_half(u);
+    /// Asks whether a configuration can be reached: a time, and tan(θ/2), None where θ is an odd multiple of π.
+    pub fn reach(&mut self, seen: &Seen, t: &Rat, u: Option<&Rat>) {
+        let at: Angle = match u {
+            Some(u) => Angle::from_tan_half(u),
+            None => Angle {
+                half_turn: 1,
+                x: Rat::zero().into(),
+            },
+        };
         let answer = seen.free.as_ref().map(|f| {
             f.locate(&Configuration {
                 chart: at.chart(),
@@ -214,7 +220,10 @@ impl SliceDocument {
         });
         self.queries.push(QueryDocument::Reach {
             time: Num::of_rat(t),
-            tan_half: Num::of_rat(u),
+            tan_half: match u {
+                Some(u) => TanHalf::Finite(Num::of_rat(u)),
+                None => TanHalf::Infinite(Infinity::Infinity),
+            },
             answer: match answer {
                 Some(Whereabouts::Inside) => "inside",
                 Some(Whereabouts::Boundary) => "boundary",

@@ -187,6 +187,16 @@ impl Free {
         Free::with_leaf(slice, at, way, LEAF)
     }
 
+    /// The same, unless `stop`, asked between the stages of the work, says that it is too late.
+    pub fn unless<K: Kernel>(
+        slice: &Slice<K>,
+        at: &Configuration,
+        way: FaceMethod,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<Free> {
+        Free::made(slice, at, way, LEAF, stop)
+    }
+
     /// The same with merges from leaves of so many arcs: F does not depend on it.
     pub fn with_leaf<K: Kernel>(
         slice: &Slice<K>,
@@ -194,7 +204,20 @@ impl Free {
         way: FaceMethod,
         leaf: usize,
     ) -> Option<Free> {
+        Free::made(slice, at, way, leaf, &|| false)
+    }
+
+    fn made<K: Kernel>(
+        slice: &Slice<K>,
+        at: &Configuration,
+        way: FaceMethod,
+        leaf: usize,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<Free> {
+        let go_on = || (!stop()).then_some(());
+        go_on()?;
         let mut strip = Strip::new(slice)?;
+        go_on()?;
         let mut x = at.x.clone();
         if at.chart == Chart::Back {
             x += &Rat::from(2);
@@ -212,6 +235,7 @@ impl Free {
             leaf,
         };
         let (b, found) = boundary(cut, &(x, at.t.clone()), how).ok()?;
+        go_on()?;
         Assembly::new(slice, strip, b)?.finish(slice, at.clone(), found)
     }
 

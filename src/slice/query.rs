@@ -14,6 +14,12 @@ impl Free {
     ///
     /// The highest edge below it along t decides. O(log |F|) where boxes tell apart.
     pub fn locate(&self, at: &Configuration) -> Whereabouts {
+        self.look(at, false)
+    }
+
+    /// Where a configuration lies, or (`after`) whether the points right after it, at the same orientation, lie
+    /// in F: what passes through it then lies below them.
+    fn look(&self, at: &Configuration, after: bool) -> Whereabouts {
         if at.t.sign() < 0 || at.t > self.duration {
             return Whereabouts::Outside;
         }
@@ -42,6 +48,10 @@ impl Free {
                 continue;
             }
             if edge.shape == Shape::Level {
+                if after {
+                    // It blocks one orientation alone, and bounds nothing from above or below.
+                    continue;
+                }
                 let on = [edge.low, edge.high].map(|v| {
                     time_of(
                         &mut k,
@@ -56,6 +66,7 @@ impl Free {
                 continue;
             }
             match k.cmp_at(edge.curve, height, xn) {
+                Ordering::Equal if after => {}
                 Ordering::Equal => return Whereabouts::Boundary,
                 Ordering::Greater => continue,
                 Ordering::Less => {}
@@ -158,7 +169,9 @@ impl Free {
                 x: Rat::frac(x, 7919),
                 t: t.clone(),
             };
-            if self.locate(&all(3)) == Whereabouts::Inside {
+            // Nothing bounds F just after t: one orientation speaks for all. At t itself it may lie on the
+            // phase's start, or where an arc has just ended.
+            if self.look(&all(3), true) == Whereabouts::Inside {
                 return None;
             }
         }

@@ -17,6 +17,9 @@ use std::cell::{Cell, OnceCell, RefCell};
 use std::rc::Rc;
 use std::sync::Mutex;
 
+/// How many units of work are done between looks at the clock.
+const ASKED: u32 = 2048;
+
 /// The slice of one pawl over one phase: its arcs, and what is known of their crossings.
 #[derive(Debug)]
 pub struct Slice<K: Kernel = Filtered> {
@@ -46,6 +49,21 @@ impl<K: Kernel> Slice<K> {
         obstacles: &[ObstacleShape<K::Num>],
         limits: Option<&(K::Num, K::Num)>,
     ) -> Slice<K> {
+        match Slice::unless(frame, pawl, obstacles, limits, &|| false) {
+            Some(slice) => slice,
+            None => unreachable!("nothing stops it"),
+        }
+    }
+
+    /// The same, unless `stop`, asked every few thousand pairs of features, says that it is too late.
+    pub fn unless(
+        frame: Frame<K::Num>,
+        pawl: &PawlShape<K::Num>,
+        obstacles: &[ObstacleShape<K::Num>],
+        limits: Option<&(K::Num, K::Num)>,
+        stop: &dyn Fn() -> bool,
+    ) -> Option<Slice<K>> {
+        let (mut met, mut late) = (0u32, false);
         // Patches with the arcs that doubles see of them; None where they cannot tell.
         let mut pairs: Vec<(Pair, [bool; 2], Option<std::ops::Range<usize>>)> = Vec::new();
         let mut seen: Vec<Seen> = Vec::new();
@@ -54,6 +72,11 @@ impl<K: Kernel> Slice<K> {
         // Exact patches that were made to tell what coincides.
         let mut asked: Vec<(usize, Box<Patch<K::Num>>)> = Vec::new();
         pairs_within(&frame, pawl, obstacles, &mut |pair, rough| {
+            met = met.wrapping_add(1);
+            late = late || met.is_multiple_of(ASKED) && stop();
+            if late {
+                return;
+            }
             let (Some(near), Some(rough)) = (&near, rough) else {
                 pairs.push((pair, [true; 2], None));
                 return;
@@ -81,6 +104,9 @@ impl<K: Kernel> Slice<K> {
                 roughs.push((rough.f0, rough.f1));
             }
         });
+        if late {
+            return None;
+        }
         let end = Scalar::interval(&frame.duration).hi;
         let shop = Rc::new(Shop {
             builder: RefCell::new(Builder::new(
@@ -102,6 +128,9 @@ impl<K: Kernel> Slice<K> {
         let (mut arcs, mut patch_of) = (Vec::with_capacity(seen.len()), Vec::new());
         for (i, (.., range)) in pairs.iter().enumerate() {
             let i = i as u32;
+            if (i + 1).is_multiple_of(ASKED) && stop() {
+                return None;
+            }
             match range {
                 Some(range) => {
                     let whole = seen[range.clone()].iter();
@@ -119,7 +148,8 @@ impl<K: Kernel> Slice<K> {
                 patch_of.push(None);
             }
         }
-        Slice::of(frame, arcs, patch_of, (roughs.into(), false), shop)
+        let rough = (roughs.into(), false);
+        Some(Slice::of(frame, arcs, patch_of, rough, shop))
     }
     fn of(
         frame: Frame<K::Num>,

@@ -33,8 +33,9 @@ pub(crate) enum Verb {
     Render(Render),
     /// The free component that holds the start: its boundary, exactly, and questions to it
     Slice(crate::slice::SliceArgs),
-    /// The face of bare arcs that holds the start
-    Face(snapfit::face::Args),
+    /// The face of bare arcs that holds the start: an unbounded one counts the frame at infinity too, four
+    /// half-edges and a cycle, as CGAL does
+    Face(crate::face::FaceArgs),
     /// Flex a structure of loosely joined bodies as far as it goes (PuzzleFlex)
     Flex(crate::flex::FlexArgs),
     /// Write a structure of one of the paper's families

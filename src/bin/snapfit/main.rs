@@ -5,9 +5,11 @@
 //! given, 4 decided but not as expected, 1 a bug.
 
 mod args;
+mod face;
 mod flex;
 mod flex_apps;
 mod flex_render;
+mod limit;
 mod output;
 mod progress;
 mod slice;
@@ -69,12 +71,7 @@ fn run(verb: &Verb) -> Result<u8, Failure> {
         Verb::Check(args) => run_check(args),
         Verb::Render(args) => run_render(args),
         Verb::Slice(args) => slice::run_slice(args),
-        Verb::Face(args) => {
-            let report = snapfit::face::run_cli(args)?;
-            let text = serde_json::to_string(&report).map_err(|e| e.to_string())?;
-            output::write(None, &(text + "\n"))?;
-            Ok(DECIDED)
-        }
+        Verb::Face(args) => face::run(args),
         Verb::Flex(args) => flex::run_flex(args),
         Verb::Generate(args) => flex::run_generate(args),
         Verb::Brace(args) => flex_apps::run_brace(args),

@@ -106,8 +106,17 @@ fn course(p: &SlicePicture<'_>, arc: &Arc, from: f64, to: f64) -> Vec<Vec<[f64; 
             Shape::Graph { .. } => [-horner(n, x) / horner(d, x), theta(arc.chart, x)],
         };
         let last: Option<&[f64; 2]> = pieces.last().and_then(|l: &Vec<[f64; 2]>| l.last());
-        if last.is_some_and(|l| (l[1] - point[1]).abs() > PI) {
-            pieces.push(Vec::new());
+        if let Some(l) = last.filter(|l| (l[1] - point[1]).abs() > PI) {
+            // Over θ = ±π, x = 0 of the back chart: up to there on one side, from there on the other.
+            let edge = if l[1] > 0.0 { PI } else { -PI };
+            let t = match arc.shape {
+                Shape::Graph { .. } => -horner(n, 0.0) / horner(d, 0.0),
+                _ => point[0],
+            };
+            if let Some(l) = pieces.last_mut() {
+                l.push([t, edge]);
+            }
+            pieces.push(vec![[t, -edge]]);
         }
         if let Some(l) = pieces.last_mut() {
             l.push(point);
@@ -146,6 +155,10 @@ pub fn slice_svg(p: &SlicePicture<'_>) -> String {
             f.half_edges(),
             f.cycles(),
             if f.cycles() == 1 { "" } else { "s" }
+        ),
+        None if p.result.outcome.kind == "undecided" => format!(
+            "{} contact arcs; F was not found within the time limit",
+            seen.slice.arcs().len()
         ),
         None => format!(
             "{} contact arcs; the pawl has no interval to be in",
