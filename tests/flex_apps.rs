@@ -310,7 +310,11 @@ fn both_signs_and_the_case_between_them() {
 fn what_interlocks_holds() {
     for (family, bodies) in [("grid", 6), ("chain", 4), ("can", 8)] {
         let s = generate(family, bodies, 1).unwrap();
-        assert_eq!(answers(&separate(&s, false, None).cases), [false; 3], "{family}");
+        assert_eq!(
+            answers(&separate(&s, false, None).cases),
+            [false; 3],
+            "{family}"
+        );
         let order = sequence(&s, None);
         assert!(order.removed.is_empty(), "{family}");
         assert!(!order.left.is_empty());

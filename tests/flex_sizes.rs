@@ -169,7 +169,11 @@ fn many_digits_flex_as_few() {
 fn odd_rules_are_told() {
     let got = run(&gap(&[("step.rotation_limit", "1e-400")]));
     assert_eq!(got.ending, Ending::Undecided);
-    assert!(got.why.to_string().contains("rotation_limit"), "{}", got.why);
+    assert!(
+        got.why.to_string().contains("rotation_limit"),
+        "{}",
+        got.why
+    );
     let mut s = gap(&[("step.violation", "1e400")]);
     s.step.path = Path::Safe;
     let got = run(&s);
@@ -194,7 +198,9 @@ fn poses_tell_their_angles() {
         ("-3", -2.498_091_544_796_508_8),
         ("1e400", std::f64::consts::PI),
     ] {
-        let s = gap(&[("body.channel.tan_half", u), ("body.tongue.tan_half", u)]);
+        let text =
+            format!("[structure]\nname = \"one\"\nepsilon = \"1\"\n{FREE}tan_half = \"{u}\"\n");
+        let s = read(&text);
         let mut still = flexed.clone();
         still.configurations = vec![s.bodies.iter().map(snapfit::flex::Pose::of).collect()];
         let pose = &FlexDocument::new(&s, &still, "exact").poses[0];
@@ -308,7 +314,10 @@ fn the_verb_of_separation_agrees_with_itself() {
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["sequence"]["removed"][0][0], "b");
     // What the library says when asked for far too much, or too little.
-    for (by, says) in [("1e400", "body walls: nothing is left"), ("1e-5000", "below 2^-20")] {
+    for (by, says) in [
+        ("1e400", "body walls: nothing is left"),
+        ("1e-5000", "below 2^-20"),
+    ] {
         let (code, _, said) = snapfit(&["loosen", &shut, "--by", by]);
         assert_eq!(code, 2, "{said}");
         assert!(said.contains(says), "{said}");

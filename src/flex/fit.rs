@@ -39,12 +39,14 @@ fn power(k: i64) -> Rat {
 /// The least k with |v| < 2ᵏ for the largest v in size; None where all are zero.
 fn size<'a>(all: impl Iterator<Item = &'a Rat>) -> Option<i64> {
     let most = all.map(Rat::abs).max().filter(|v| !v.is_zero())?;
-    Some(most.floor().bits() as i64).filter(|k| *k > 0).or_else(|| {
-        // Below one: 1 / v lies in (2^(j−1), 2ʲ], so v in [2⁻ʲ, 2^(1−j)).
-        let inverse = most.recip().ceil();
-        let j = (&inverse - Int::one()).bits() as i64;
-        Some(1 - j)
-    })
+    Some(most.floor().bits() as i64)
+        .filter(|k| *k > 0)
+        .or_else(|| {
+            // Below one: 1 / v lies in (2^(j−1), 2ʲ], so v in [2⁻ʲ, 2^(1−j)).
+            let inverse = most.recip().ceil();
+            let j = (&inverse - Int::one()).bits() as i64;
+            Some(1 - j)
+        })
 }
 
 fn scaled(p: &Vec2, by: &Rat) -> Vec2 {

@@ -1,8 +1,8 @@
 //! Results as JSON, in the words of the contract.
 
 use super::bound::OuterBound;
-use super::outcome::{Ending, Flexed};
 use super::model::turned_by;
+use super::outcome::{Ending, Flexed};
 use super::shape::Pose;
 use super::types::Structure;
 use crate::number::{Algebraic, Rat};

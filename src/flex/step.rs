@@ -159,6 +159,7 @@ impl<'a> Run<'a> {
                 .deadline
                 .map(|d| d.saturating_duration_since(Instant::now())),
             basis,
+            values: rows.iter().any(Row::is_long),
             ..lp::Options::default()
         }
     }

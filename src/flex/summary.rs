@@ -209,7 +209,10 @@ impl Display for SeparateDocument {
             writeln!(f, "  way out    {body} towards ({x}, {y})")?;
         }
         // What takes it apart; else what the near constraints leave.
-        let parting = self.cases.iter().find(|c| c.parts);
+        let apart = self.verdict == "comes-apart";
+        let clear = self.cases.iter().find(|c| c.parts && c.clear.is_some());
+        let first_order = || self.cases.iter().find(|c| c.parts && apart);
+        let parting = clear.or_else(first_order);
         let moving = || self.cases.iter().find(|c| !c.motion.is_empty());
         if let Some(case) = parting.or_else(moving) {
             match (case.clear, case.parts) {

@@ -245,7 +245,9 @@ pub(crate) fn run_loosen(args: &LoosenArgs) -> Result<u8, Failure> {
 /// The picture of a step in the first direction found.
 fn parted(structure: &Structure, found: &Separated, step: Option<&Rat>) -> String {
     let before: Vec<Pose> = structure.bodies.iter().map(Pose::of).collect();
-    let parting = found.cases.iter().find(|c| c.parts);
+    let apart = found.verdict() == "comes-apart" && found.way_out.is_none();
+    let clear = found.cases.iter().find(|c| c.parts && c.clear.is_some());
+    let parting = clear.or_else(|| found.cases.iter().find(|c| c.parts && apart));
     let velocities = match (parting, &found.way_out) {
         (Some(case), _) => case.velocities.clone(),
         (None, Some((body, d))) => {

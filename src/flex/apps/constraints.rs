@@ -82,7 +82,17 @@ fn constraint(row: &Row, run: &Run<'_>, unit: &Rat) -> Constraint {
     let gradient: Vec<(usize, &'static str, Rat)> = parts
         .into_iter()
         .filter(|(b, c, v)| free(*b, c) && !v.is_zero())
-        .map(|(b, c, v)| (b, c, if c == "theta" { rat(v) * unit.clone() } else { rat(v) }))
+        .map(|(b, c, v)| {
+            (
+                b,
+                c,
+                if c == "theta" {
+                    rat(v) * unit.clone()
+                } else {
+                    rat(v)
+                },
+            )
+        })
         .collect();
     let d0 = rat(row.d0.clone()) * unit.clone();
     let bound = match gradient.as_slice() {

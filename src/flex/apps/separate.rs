@@ -297,7 +297,7 @@ pub struct Separated {
     /// Constraints that hold the bodies where they stand; with none, nothing is within epsilon of
     /// anything.
     pub rows: usize,
-    /// Where every direction of the three signs collides: a body and a translation of it alone that
+    /// Where a direction of the three signs collides and none is clear: a body and a translation of it alone that
     /// clears everything for all time.
     pub way_out: Option<(usize, Vec2)>,
 }
@@ -305,12 +305,17 @@ pub struct Separated {
 impl Separated {
     /// `comes-apart` if a direction takes something apart; `holds` if the near constraints leave no
     /// free body any direction; `undecided` if a limit was reached, or if directions are left by
-    /// the near constraints but every one that was found collides farther on.
+    /// the near constraints but one collides farther on and none was found that is clear for all
+    /// time. Where all directions turn bodies, it is a statement to first order, as PF's.
     pub fn verdict(&self) -> &'static str {
-        let open = |c: &Separation| c.answer == Answer::Undecided || c.clear == Some(false);
-        if self.way_out.is_some() || self.cases.iter().any(|c| c.parts) {
+        let any = |f: fn(&Separation) -> bool| self.cases.iter().any(f);
+        if self.way_out.is_some() || any(|c| c.parts && c.clear.is_some()) {
             "comes-apart"
-        } else if self.cases.iter().any(open) {
+        } else if any(|c| c.clear == Some(false)) {
+            "undecided"
+        } else if any(|c| c.parts) {
+            "comes-apart"
+        } else if any(|c| c.answer == Answer::Undecided) {
             "undecided"
         } else {
             "holds"
@@ -323,12 +328,8 @@ impl Separated {
 ///
 /// Cost: at most four linear programs, and where pinned bodies alone turn two more for every freedom
 /// of the free ones; for directions without rotations the product of the edges of every two bodies
-/// that part. Where all directions collide, a search for one body's way out like [`sequence`]'s.
-pub fn separate(
-    structure: &Structure,
-    translations: bool,
-    limit: Option<Duration>,
-) -> Separated {
+/// that part. Where one collides and none is clear, a search for one body's way out like [`sequence`]'s.
+pub fn separate(structure: &Structure, translations: bool, limit: Option<Duration>) -> Separated {
     let file = held(structure);
     let fit = Fitted::of(&file);
     let structure = fit.as_ref().map_or(&file, |f| &f.structure);
@@ -383,7 +384,7 @@ pub fn separate(
         }
     });
     let collides = cases.iter().any(|c| c.clear == Some(false));
-    let way_out = (collides && cases.iter().all(|c| !c.parts))
+    let way_out = (collides && !cases.iter().any(|c| c.parts && c.clear.is_some()))
         .then(|| sequence(&file, limit).removed.into_iter().next());
     Separated {
         cases,
@@ -469,7 +470,7 @@ pub struct SeparateDocument {
     pub reason: Option<&'static str>,
     /// The three signs.
     pub cases: Vec<CaseDocument>,
-    /// Where every direction found collides: a body and a translation of it alone, as two rationals,
+    /// Where a direction found collides and none is clear: a body and a translation of it alone, as two rationals,
     /// that clears everything for all time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub way_out: Option<(String, [String; 2])>,
@@ -498,11 +499,7 @@ pub struct CaseDocument {
 
 impl SeparateDocument {
     /// The document of a decision.
-    pub fn new(
-        structure: &Structure,
-        translations: bool,
-        found: &Separated,
-    ) -> SeparateDocument {
+    pub fn new(structure: &Structure, translations: bool, found: &Separated) -> SeparateDocument {
         let cases = &found.cases;
         let verdict = found.verdict();
         let free = structure.bodies.iter().all(|b| b.hold == Hold::Free);
@@ -515,8 +512,8 @@ impl SeparateDocument {
             rows: found.rows,
             reason: match verdict {
                 "undecided" if cases.iter().any(|c| c.clear == Some(false)) => Some(
-                    "what is within epsilon leaves it free to go, but every direction found \
-                     collides farther on: a larger epsilon may decide it",
+                    "what is within epsilon leaves it free to go, but no direction was found that \
+                     does not collide farther on: a larger epsilon may decide it",
                 ),
                 "undecided" => Some("a limit was reached"),
                 "holds" if cases.iter().any(|c| c.velocities.is_some()) => {

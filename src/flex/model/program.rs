@@ -26,6 +26,17 @@ const LONG: u64 = 500;
 /// A rotation of 2 to this in a step is no limit: 2 tan(θ/2) so large is a turn by π.
 const TURNS: u64 = 64;
 
+impl Row {
+    /// Whether doubles may not hold its coefficients.
+    pub(crate) fn is_long(&self) -> bool {
+        let each = self
+            .normal
+            .iter()
+            .chain([&self.theta1, &self.theta2, &self.d0]);
+        each.map(Int::bits).any(|bits| bits > LONG)
+    }
+}
+
 impl Scaffold {
     /// The weighted sum of displacements since the start, exactly. An angle counts as twice the
     /// tangent of half its change, which is the angle up to its third power.
@@ -145,7 +156,11 @@ impl Scaffold {
                     let left = lines.get(&body).map(|x| *x - &poses[body].place.x);
                     let own = self.turn_limits.as_ref().map(|all| &all[body]);
                     let asked = self.rotation_limit.as_ref();
-                    let limit = asked.filter(|v| **v < no_limit).into_iter().chain(own).min();
+                    let limit = asked
+                        .filter(|v| **v < no_limit)
+                        .into_iter()
+                        .chain(own)
+                        .min();
                     let range = match (limit, k) {
                         // Not past the line.
                         (_, 0) => match left {
