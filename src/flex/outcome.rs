@@ -66,7 +66,10 @@ pub enum Why {
 
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let short = |v: &f64| digits(*v, 3);
+        let short = |v: &f64| match v.is_finite() {
+            true => digits(*v, 3),
+            false => "a number past the double range".to_owned(),
+        };
         match self {
             Why::Little(promise) if *promise <= 0.0 => {
                 write!(f, "the last program finds nothing more to gain")

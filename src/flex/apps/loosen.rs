@@ -232,10 +232,14 @@ impl Tolerance {
         match self.probes.first() {
             Some(Probe {
                 flex: Some(flex), ..
-            }) => format!(
+            }) if double(flex).is_finite() => format!(
                 "the structure as drawn already flexes by {}, over the limit",
                 digits(double(flex), 6)
             ),
+            Some(Probe { flex: Some(_), .. }) => {
+                "the structure as drawn already flexes past the double range, over the limit"
+                    .to_owned()
+            }
             Some(Probe {
                 reason: Some(why), ..
             }) => {
