@@ -190,7 +190,12 @@ fn expand(taken: &[Option<u8>], k: usize, solved: &Solver<'_>, open: &mut Vec<No
 
 /// The values of an outcome by body.
 fn directions(scaffold: &Scaffold, outcome: &Outcome) -> Vec<[f64; 3]> {
-    let at = |c: Option<usize>| c.and_then(|c| outcome.near.get(c)).copied().unwrap_or(0.0);
+    // Exact values where the program was asked for them: its numbers are long.
+    let at = |c: Option<usize>| {
+        let exact = |c: usize| outcome.values.as_ref()?.get(c).map(super::shape::double);
+        let near = |c: usize| outcome.near.get(c).copied();
+        c.and_then(|c| exact(c).or_else(|| near(c))).unwrap_or(0.0)
+    };
     (0..scaffold.forms.len())
         .map(|b| scaffold.column(b).map(at))
         .collect()

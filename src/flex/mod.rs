@@ -12,6 +12,7 @@
 //! | `shape` | where does a body stand, in integers? |
 //! | `pairs` | which point is to stay on its side of which line? |
 //! | `model` | what are the distances, gradients and objective there? |
+//! | `fit` | in which unit are doubles of use? |
 //! | `station`, `grain` | where are gradients taken, and how are poses rounded? |
 //! | `bend` | along which curve is a direction followed? |
 //! | `run`, `limits` | when does stepping go on, and when does it end? |
@@ -27,6 +28,7 @@ pub mod apps;
 mod bend;
 mod bound;
 mod branch;
+mod fit;
 pub mod generate;
 mod grain;
 mod limits;

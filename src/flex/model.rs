@@ -75,7 +75,7 @@ pub(crate) struct Scaffold {
     pub(crate) column_count: usize,
     /// Where every body stands at the start.
     pub(crate) start: Vec<Pose>,
-    rotation_limit: Option<Rat>,
+    pub(crate) rotation_limit: Option<Rat>,
     /// Limits of rotation by body, for the next program.
     pub(crate) turn_limits: Option<Vec<Rat>>,
 }

@@ -52,6 +52,8 @@ pub enum Why {
     Unproven(f64),
     /// This was promised, and no part of the direction keeps the violation allowed.
     Unfollowed(f64),
+    /// A step gained less than asked, and its program promises this where rotations are not limited.
+    Limited(f64),
     /// The number of steps was reached.
     Steps(usize),
     /// The program has no optimum.
@@ -64,7 +66,10 @@ pub enum Why {
 
 impl fmt::Display for Why {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let short = |v: &f64| digits(*v, 3);
+        let short = |v: &f64| match v.is_finite() {
+            true => digits(*v, 3),
+            false => "a number past the double range".to_owned(),
+        };
         match self {
             Why::Little(promise) if *promise <= 0.0 => {
                 write!(f, "the last program finds nothing more to gain")
@@ -102,6 +107,12 @@ impl fmt::Display for Why {
                 f,
                 "the last program promises {} more to first order, but no part of its direction \
                  keeps the violation allowed",
+                short(promise)
+            ),
+            Why::Limited(promise) => write!(
+                f,
+                "the last step gained less than asked, but only for the limit of rotation: without \
+                 `rotation_limit` its program promises {} to first order",
                 short(promise)
             ),
             Why::Steps(most) => write!(f, "the most steps were taken ({most})"),

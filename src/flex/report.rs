@@ -1,9 +1,13 @@
 //! Results as JSON, in the words of the contract.
 
 use super::bound::OuterBound;
+use super::model::turned_by;
 use super::outcome::{Ending, Flexed};
+use super::shape::Pose;
 use super::types::Structure;
+use crate::number::{Algebraic, Rat};
 use crate::report::Num;
+use crate::report::theta::theta;
 use serde::Serialize;
 use serde_json::Value;
 
@@ -136,6 +140,20 @@ pub struct PoseDocument {
     pub y: String,
     /// tan(θ/2), exact.
     pub tan_half: String,
+    /// θ in radians, within (−π, π], correctly rounded.
+    pub theta: f64,
+    /// How far it has turned since the start, φ in radians, within (−π, π], correctly rounded; an
+    /// objective counts a turn as 2 tan(φ/2).
+    pub turned: f64,
+}
+
+/// θ of tan(θ/2), the nearest double.
+fn radians(tan_half: &Rat) -> f64 {
+    if tan_half.abs() <= Rat::one() {
+        return theta(0, &Algebraic::from(tan_half.clone()));
+    }
+    // 2 atan u = ±π − 2 atan(1/u).
+    theta(tan_half.sign().into(), &Algebraic::from(-tan_half.recip()))
 }
 
 impl FlexDocument {
@@ -153,6 +171,8 @@ impl FlexDocument {
                     x: at.x.to_string(),
                     y: at.y.to_string(),
                     tan_half: pose.tan_half.to_string(),
+                    theta: radians(&pose.tan_half),
+                    turned: radians(&turned_by(&Pose::of(body), pose)),
                 }
             })
             .collect();
@@ -291,7 +311,9 @@ impl StructureCheck {
     pub fn of(structure: &Structure, warnings: Vec<String>) -> StructureCheck {
         use super::types::Hold;
         let options = super::step::FlexOptions::default();
-        let run = super::step::Run::new(structure, &options);
+        let fit = super::fit::Fitted::of(structure);
+        let own = fit.as_ref().map_or(structure, |f| &f.structure);
+        let run = super::step::Run::new(own, &options);
         let placed = run.scaffold.place(&run.scaffold.start);
         let selection = run.selection(&placed, false);
         let (_, rows) = run.rows(&selection, &placed);

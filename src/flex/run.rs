@@ -8,6 +8,7 @@
 //! the run too: converged if it is little beside what was reached, undecided if not.
 
 use super::branch::{self, Solved};
+use super::fit::finite;
 use super::limits::Limits;
 use super::motion::{Motion, ProofSize};
 use super::outcome::{Ending, Flexed, Step, Violation, Why};
@@ -180,7 +181,7 @@ impl Run<'_> {
             // A step that loses has restored constraints that the ones before overreached. If
             // that was little, what the next would gain it would overreach again, over and over,
             // and so it is if what was overreached and restored came to nothing.
-            let both = &gain + &Rat::from_f64(last_gain);
+            let both = &gain + &finite(last_gain);
             let little = -&gain < &out.displacement.abs() * &Rat::from_f64(LITTLE);
             last_gain = double(&gain);
             if gain < rules.gain && (-&gain < rules.gain || little || both < rules.gain) {
@@ -228,7 +229,28 @@ impl Run<'_> {
             pairs = self.selection(&placed, true).pairs;
         }
         out.violation = self.worst(&pairs, &placed);
+        if matches!(out.why, Why::Little(_))
+            && let Some(promise) = self.unlimited(&poses).filter(|p| self.worth(*p))
+        {
+            (out.ending, out.why) = (Ending::Undecided, Why::Limited(promise));
+        }
         out
+    }
+
+    /// What a program promises without the limit of rotation that the structure asks for; None
+    /// where it asks for none.
+    fn unlimited(&mut self, poses: &[Pose]) -> Option<f64> {
+        self.scaffold.rotation_limit.take()?;
+        self.scaffold.turn_limits = None;
+        let placed = self.scaffold.place(poses);
+        let selection = self.selection(&placed, true);
+        let (_, rows) = self.rows(&selection, &placed);
+        let solved = branch::solve(self, &rows, &selection, &placed, poses);
+        match solved.status {
+            Status::Optimal => Some(double(&solved.objective)),
+            Status::Unbounded => Some(f64::INFINITY),
+            _ => None,
+        }
     }
 
     /// How a run ends that gains no more, though something was promised: converged, if that is

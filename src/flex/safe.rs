@@ -13,6 +13,7 @@
 //! bodies are allowed to turn less, and the program is solved anew.
 
 use super::branch::{self, Solved};
+use super::fit::finite;
 use super::model::Row;
 use super::motion::{Contact, Motion, ProofSize};
 use super::pairs::Pair;
@@ -253,7 +254,7 @@ impl Run<'_> {
                 Tried::Proven(next, proof) => {
                     let gain = self.scaffold.displacement(&next) - &before;
                     let end = End { part, next, proof };
-                    if !self.worth(promise) || gain >= Rat::from_f64(KEEPS * promise * part) {
+                    if !self.worth(promise) || gain >= finite(KEEPS * promise * part) {
                         return Ok(end);
                     }
                     little.get_or_insert(end);
@@ -410,7 +411,7 @@ const HELD_BITS: u64 = 10;
 
 /// The row with a distance held back, or a little more; one that is negative is given.
 pub(crate) fn hold(row: &Row, distance: f64) -> Row {
-    let back = Rat::from_f64(distance) * Rat::from(length(row));
+    let back = finite(distance) * Rat::from(length(row));
     if back.is_zero() {
         return row.clone();
     }

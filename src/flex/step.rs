@@ -15,6 +15,7 @@
 
 use super::bend::Bend;
 use super::branch::Solved;
+use super::fit::{Fitted, finite};
 use super::grain::Grain;
 use super::model::{Row, Scaffold};
 use super::outcome::{Flexed, Violation};
@@ -106,7 +107,10 @@ const HALVINGS: usize = 8;
 ///
 /// Cost: a linear program a step; building it is near-linear in the bodies.
 pub fn flex(structure: &Structure, options: &FlexOptions<'_>) -> Flexed {
-    Run::new(structure, options).flex()
+    match Fitted::of(structure) {
+        Some(fit) => fit.back(Run::new(&fit.structure, options).flex()),
+        None => Run::new(structure, options).flex(),
+    }
 }
 
 impl<'a> Run<'a> {
@@ -155,6 +159,7 @@ impl<'a> Run<'a> {
                 .deadline
                 .map(|d| d.saturating_duration_since(Instant::now())),
             basis,
+            values: rows.iter().any(Row::is_long),
             ..lp::Options::default()
         }
     }
@@ -185,10 +190,12 @@ impl<'a> Run<'a> {
     }
 
     /// The pairs of a configuration. At the start nothing overlaps; later on a vertex may lie
-    /// inside an edge by the violation that was allowed.
+    /// inside an edge by the violation that was allowed, on a fast path; but what lies deeper than
+    /// epsilon is not near.
     pub(crate) fn selection(&self, placed: &[Placed], moved: bool) -> Selection {
-        let slack = if moved {
-            &self.structure.step.violation * &Rat::from(2)
+        let slack = if moved && self.structure.step.path == Path::Fast {
+            let twice = &self.structure.step.violation * &Rat::from(2);
+            twice.min(self.structure.epsilon.clone())
         } else {
             Rat::zero()
         };
@@ -261,7 +268,7 @@ impl<'a> Run<'a> {
         };
         let before = self.scaffold.displacement(poses);
         // A step that is to restore constraints may lose; one that is to gain must gain.
-        let least = |scale: f64| (promise > 0.0).then(|| Rat::from_f64(KEEPS * promise * scale));
+        let least = |scale: f64| (promise > 0.0).then(|| finite(KEEPS * promise * scale));
         let good = |poses: &[Pose], scale: f64| {
             if let Some(least) = least(scale)
                 && self.scaffold.displacement(poses) - &before < least

@@ -199,7 +199,28 @@ impl Display for SeparateDocument {
         if let Some(held) = &self.held {
             writeln!(f, "  held       {held}: the file holds no body")?;
         }
-        if let Some(case) = self.cases.iter().find(|c| !c.motion.is_empty()) {
+        if self.rows == 0 {
+            writeln!(f, "  near       nothing is within epsilon of anything")?;
+        }
+        if let Some(why) = self.reason {
+            writeln!(f, "  because    {why}")?;
+        }
+        if let Some((body, [x, y])) = &self.way_out {
+            writeln!(f, "  way out    {body} towards ({x}, {y})")?;
+        }
+        // What takes it apart; else what the near constraints leave.
+        let apart = self.verdict == "comes-apart";
+        let clear = self.cases.iter().find(|c| c.parts && c.clear.is_some());
+        let first_order = || self.cases.iter().find(|c| c.parts && apart);
+        let parting = clear.or_else(first_order);
+        let moving = || self.cases.iter().find(|c| !c.motion.is_empty());
+        if let Some(case) = parting.or_else(moving) {
+            match (case.clear, case.parts) {
+                (Some(true), true) => writeln!(f, "  direction  clear of everything for all time")?,
+                (Some(false), _) => writeln!(f, "  direction  collides farther on")?,
+                (None, true) => writeln!(f, "  direction  to first order: it turns")?,
+                _ => {}
+            }
             for (body, [x, y, turn]) in case.motion.iter().take(MOTIONS) {
                 write!(f, "  {body} moves by ({}, {})", short(x), short(y))?;
                 if turn.value != Some(0.0) {

@@ -94,7 +94,8 @@ pub struct View {
 /// A term of the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Term {
-    /// Weights on the movement of a body: of its frame's origin, and of its angle in radians.
+    /// Weights on the movement of a body: of its frame's origin, and of its turn φ, which counts as
+    /// 2 tan(φ/2).
     Body {
         /// Index of the body.
         body: usize,
@@ -140,7 +141,7 @@ pub struct StepRules {
     pub violation: Rat,
     /// Whether steps are shortened until their whole motion is proven free of collision.
     pub path: Path,
-    /// Largest rotation of a body in one step, in radians.
+    /// Largest rotation of a body in one step, as 2 tan(φ/2); 2⁶⁴ or more is no limit.
     pub rotation_limit: Option<Rat>,
     /// Stepping ends where a step gains less; 10⁻⁶ by default.
     pub gain: Rat,

@@ -378,18 +378,25 @@ fn with_contents<'a>(d: &Int, contents: impl Iterator<Item = &'a Int>) -> Int {
 fn near(frame: &Frame<'_>, values: &super::basis::ColumnVector) -> Vec<f64> {
     let p = frame.problem;
     let double = |v: &Rat| v.nearest_f64().unwrap_or(f64::INFINITY);
-    // The scale of the bounds may lie past the double range, and values with it: their quotient
-    // is what counts, so both go by mantissa and exponent.
-    let (scale, exponent) = super::digits::mantissa(&p.bound_scale);
+    // The scale of the bounds may lie past the double range, and values and a column's scale with
+    // it: what they make together is what counts, so all go by mantissa and exponent.
+    use super::digits::{ldexp, mantissa};
+    let (scale, exponent) = mantissa(&p.bound_scale);
     (0..p.n)
         .map(|j| {
-            let v = if frame.basis.status[j] == Resting::Basic {
-                let (v, e) = values.scaled(&values.component(frame, j));
-                super::digits::ldexp(v / scale, e - exponent)
-            } else {
-                double(&Rat::new(frame.resting_value(j), p.bound_scale.clone()))
-            };
-            v * double(&p.column_scale[j])
+            let size = &p.column_scale[j];
+            if frame.basis.status[j] != Resting::Basic {
+                let v = Rat::new(frame.resting_value(j), p.bound_scale.clone());
+                return double(&(v * size.clone()));
+            }
+            let (v, e) = values.scaled(&values.component(frame, j));
+            let (v, e) = (v / scale, e - exponent);
+            let (whole, by) = (ldexp(v, e), double(size));
+            if (whole.is_normal() || whole == 0.0 && v == 0.0) && by.is_normal() {
+                return whole * by;
+            }
+            let ((n, up), (d, down)) = (mantissa(size.numer()), mantissa(size.denom()));
+            ldexp(v * n / d, e + up - down)
         })
         .collect()
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use snapfit::flex::apps::brace::{BraceDocument, Change, brace, with_question};
 use snapfit::flex::apps::constraints::ConstraintsDocument;
 use snapfit::flex::apps::loosen::{LoosenDocument, Measure, loosen, tolerance};
-use snapfit::flex::apps::separate::{SeparateDocument, Separation, separate};
+use snapfit::flex::apps::separate::{SeparateDocument, Separated, separate};
 use snapfit::flex::apps::sequence::{SequenceDocument, sequence};
 use snapfit::flex::{Ending, FlexOptions, Pose, Structure, structure_to_toml};
 use snapfit::geometry::Vec2;
@@ -243,9 +243,21 @@ pub(crate) fn run_loosen(args: &LoosenArgs) -> Result<u8, Failure> {
 }
 
 /// The picture of a step in the first direction found.
-fn parted(structure: &Structure, cases: &[Separation; 3], step: Option<&Rat>) -> String {
+fn parted(structure: &Structure, found: &Separated, step: Option<&Rat>) -> String {
     let before: Vec<Pose> = structure.bodies.iter().map(Pose::of).collect();
-    let velocities = cases.iter().find_map(|c| c.velocities.as_ref());
+    let apart = found.verdict() == "comes-apart" && found.way_out.is_none();
+    let clear = found.cases.iter().find(|c| c.parts && c.clear.is_some());
+    let parting = clear.or_else(|| found.cases.iter().find(|c| c.parts && apart));
+    let velocities = match (parting, &found.way_out) {
+        (Some(case), _) => case.velocities.clone(),
+        (None, Some((body, d))) => {
+            let mut all = vec![[0; 3].map(|_| Rat::zero()); structure.bodies.len()];
+            let top = d.x.abs().max(d.y.abs());
+            (all[*body][0], all[*body][1]) = (&d.x / &top, &d.y / &top);
+            Some(all)
+        }
+        (None, None) => None,
+    };
     let heights = || {
         structure
             .bodies
@@ -259,7 +271,7 @@ fn parted(structure: &Structure, cases: &[Separation; 3], step: Option<&Rat>) ->
     let step = step.cloned().unwrap_or(size / Rat::from(4));
     let after = match velocities {
         None => before.clone(),
-        Some(all) => before
+        Some(ref all) => before
             .iter()
             .zip(all)
             .map(|(pose, [x, y, theta])| Pose {
@@ -270,6 +282,7 @@ fn parted(structure: &Structure, cases: &[Separation; 3], step: Option<&Rat>) ->
     };
     let what = match velocities {
         Some(_) => "a step in a direction of separation",
+        None if found.verdict() == "undecided" => "undecided whether it comes apart",
         None => "nothing comes apart",
     };
     structure_svg(&StructurePicture {
@@ -285,15 +298,15 @@ fn parted(structure: &Structure, cases: &[Separation; 3], step: Option<&Rat>) ->
 
 pub(crate) fn run_separate(args: &SeparateArgs) -> Result<u8, Failure> {
     let structure = read(&args.common)?;
-    let cases = separate(&structure, args.translations, args.time_limit);
-    let mut document = SeparateDocument::new(&structure, args.translations, &cases);
+    let found = separate(&structure, args.translations, args.time_limit);
+    let mut document = SeparateDocument::new(&structure, args.translations, &found);
     if args.sequence {
         let order = sequence(&structure, args.time_limit);
-        document.sequence = Some(SequenceDocument::new(&structure, &order));
+        document.with_sequence(SequenceDocument::new(&structure, &order));
     }
     if let Some(path) = &args.svg {
         output::spare_input(&args.common.file, Some(path))?;
-        output::write(Some(path), &parted(&structure, &cases, args.step.as_ref()))?;
+        output::write(Some(path), &parted(&structure, &found, args.step.as_ref()))?;
     }
     tell(&document, &args.format, &args.common)?;
     let expected = match args.expect {

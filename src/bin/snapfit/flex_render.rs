@@ -96,7 +96,7 @@ fn draw(
         output::write(to, &picture(after, title, note))?;
         return Ok(());
     };
-    let Some(path) = to else {
+    let Some(path) = to.filter(|p| *p != Path::new("-")) else {
         return Err("frames are files: give --svg a path".to_owned().into());
     };
     for k in 0..frames {

@@ -8,6 +8,7 @@
 //! first in the file. So the answer is exact for the configuration that flexing reached.
 
 use crate::flex::Violation;
+use crate::flex::fit::Fitted;
 use crate::flex::shape::{Placed, Shape, double};
 use crate::flex::{FlexOptions, Flexed, Pose, Structure, Term, flex};
 use crate::geometry::{Box2, Location, Polygon, Vec2};
@@ -101,6 +102,15 @@ pub fn strongest(
     after: &[Pose],
     change: Change,
 ) -> Option<Brace> {
+    if let Some(fit) = Fitted::of(structure) {
+        let (from, to) = (fit.own(before), fit.own(after));
+        let (unit, own) = (fit.length(), strongest(&fit.structure, &from, &to, change)?);
+        return Some(Brace {
+            before: own.before.map(|p| Vec2::new(&p.x * &unit, &p.y * &unit)),
+            squares: own.squares.map(|v| v * unit.square()),
+            ..own
+        });
+    }
     let place = |poses: &[Pose]| -> Vec<Polygon> {
         let each = structure.bodies.iter().zip(poses);
         each.map(|(b, p)| Placed::new(&Shape::of(b), p).polygon())

@@ -5,6 +5,7 @@
 //! structure is an arm turning about a pin. Rows are those of the first linear program, up to a
 //! positive factor, so everything here is an exact rational.
 
+use crate::flex::fit::Fitted;
 use crate::flex::model::{Form, Row};
 use crate::flex::step::{FlexOptions, Run};
 use crate::flex::{Pair, Plane, Point, Structure};
@@ -51,14 +52,17 @@ impl Constraint {
 /// The constraints of a structure's first program, in its order. Costs one model.
 pub fn constraints(structure: &Structure) -> Vec<Constraint> {
     let options = FlexOptions::default();
-    let run = Run::new(structure, &options);
+    let fit = Fitted::of(structure);
+    let run = Run::new(fit.as_ref().map_or(structure, |f| &f.structure), &options);
+    let unit = fit.as_ref().map_or_else(Rat::one, Fitted::length);
     let placed = run.scaffold.place(&run.scaffold.start);
     let selection = run.selection(&placed, false);
     let (_, rows) = run.rows(&selection, &placed);
-    rows.iter().map(|r| constraint(r, &run)).collect()
+    rows.iter().map(|r| constraint(r, &run, &unit)).collect()
 }
 
-fn constraint(row: &Row, run: &Run<'_>) -> Constraint {
+/// A row whose lengths are in multiples of `unit`.
+fn constraint(row: &Row, run: &Run<'_>, unit: &Rat) -> Constraint {
     let rat = |v: Int| Rat::from(v);
     let [nx, ny] = &row.normal;
     let (one, two) = (row.pair.line_body as usize, row.pair.point_body as usize);
@@ -78,9 +82,19 @@ fn constraint(row: &Row, run: &Run<'_>) -> Constraint {
     let gradient: Vec<(usize, &'static str, Rat)> = parts
         .into_iter()
         .filter(|(b, c, v)| free(*b, c) && !v.is_zero())
-        .map(|(b, c, v)| (b, c, rat(v)))
+        .map(|(b, c, v)| {
+            (
+                b,
+                c,
+                if c == "theta" {
+                    rat(v) * unit.clone()
+                } else {
+                    rat(v)
+                },
+            )
+        })
         .collect();
-    let d0 = rat(row.d0.clone());
+    let d0 = rat(row.d0.clone()) * unit.clone();
     let bound = match gradient.as_slice() {
         [(body, coordinate, j)] => Some(Bound {
             body: *body,

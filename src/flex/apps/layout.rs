@@ -36,6 +36,8 @@ pub const MOST_CELLS: usize = 1_000_000;
 /// # Errors
 /// No block, too many cells, or a character that means nothing; with line and column.
 pub fn layout(name: &str, drawing: &str) -> Result<Structure, String> {
+    // Some editors begin a file with a byte order mark.
+    let drawing = drawing.strip_prefix('\u{feff}').unwrap_or(drawing);
     let lines: Vec<Vec<char>> = drawing.lines().map(|l| l.chars().collect()).collect();
     if drawing.len() > MOST_CELLS {
         return Err(format!("a drawing has at most {MOST_CELLS} cells"));

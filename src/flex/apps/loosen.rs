@@ -50,6 +50,10 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
     if size > f64::from(1u32 << 24) {
         return Err("coordinates past 2^24 are not inset".to_owned());
     }
+    // An inset this large swallows the body, and the library's grid would overflow.
+    if double(by) > 2.0 * size {
+        return Err("nothing is left of it".to_owned());
+    }
     // Sharper corners than 2° are not mitred by the library; the check will say so.
     let mut style = OutlineStyle::new(-double(by)).line_join(LineJoin::Miter(0.035));
     style.math = MathMode::Float;
@@ -57,11 +61,11 @@ pub fn inset(ring: &[Vec2], by: &Rat) -> Result<Vec<Vec2>, String> {
     let scale = f64::from(1u32 << GRID_BITS);
     let shapes = contour
         .outline_fixed_scale_as::<i64>(&style, scale)
-        .map_err(|e| format!("the inset cannot be computed: {e:?}"))?;
+        .map_err(|_| "its inset cannot be computed in doubles".to_owned())?;
     let [shape] = shapes.as_slice() else {
         return Err(match shapes.len() {
-            0 => "nothing is left of a body".to_owned(),
-            n => format!("a body falls into {n} parts"),
+            0 => "nothing is left of it".to_owned(),
+            n => format!("it falls into {n} parts"),
         });
     };
     let [outer] = shape.as_slice() else {
@@ -175,6 +179,12 @@ pub fn loosen(structure: &Structure, by: &Rat) -> Result<Structure, String> {
     if by.sign() <= 0 {
         return Err("the inset is not positive".to_owned());
     }
+    if *by < slop() {
+        return Err(
+            "an inset below 2^-20 is not made: no edge of one is placed more finely than that"
+                .to_owned(),
+        );
+    }
     let mut out = structure.clone();
     for body in &mut out.bodies {
         body.vertices =
@@ -222,10 +232,14 @@ impl Tolerance {
         match self.probes.first() {
             Some(Probe {
                 flex: Some(flex), ..
-            }) => format!(
+            }) if double(flex).is_finite() => format!(
                 "the structure as drawn already flexes by {}, over the limit",
                 digits(double(flex), 6)
             ),
+            Some(Probe { flex: Some(_), .. }) => {
+                "the structure as drawn already flexes past the double range, over the limit"
+                    .to_owned()
+            }
             Some(Probe {
                 reason: Some(why), ..
             }) => {

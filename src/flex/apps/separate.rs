@@ -15,10 +15,15 @@
 //!
 //! A held body is needed, or the whole could always drift away: where the file holds none, the
 //! first body is. What is decided is the linear model of near constraints; a direction without
-//! rotations is checked against all bodies for all time by [`super::escape`], exactly.
+//! rotations is checked against all bodies for all time by [`super::escape`], exactly; one that
+//! collides takes nothing apart. Nor does a direction in which only pinned bodies turn about their
+//! pins: where the case Σ = 0 begins with such a one, programs for every freedom of the free bodies
+//! look for another.
 
 use super::escape::escapes;
+use super::sequence::{SequenceDocument, sequence};
 use crate::certificate::lp::{Claim, verify};
+use crate::flex::fit::Fitted;
 use crate::flex::model::{Form, Row};
 use crate::flex::shape::placed;
 use crate::flex::step::{FlexOptions, Run};
@@ -59,6 +64,8 @@ pub(crate) struct Cone {
     pub(crate) columns: usize,
     pub(crate) rows: Vec<Vec<(usize, Rat)>>,
     pub(crate) counted: Vec<usize>,
+    /// Columns of bodies that nothing holds.
+    pub(crate) loose: Vec<usize>,
     pub(crate) time_limit: Option<Duration>,
 }
 
@@ -91,7 +98,7 @@ impl Cone {
         match sum {
             Sum::Positive => self.unbounded(&Rat::one()),
             Sum::Negative => self.unbounded(&Rat::from(-1)),
-            Sum::Zero => self.level(),
+            Sum::Zero => self.loosened(),
         }
     }
 
@@ -122,20 +129,47 @@ impl Cone {
         self.rows.iter().all(|row| rate(row).sign() >= 0)
     }
 
-    fn level(&self) -> Answer {
+    /// A direction with sum 0, one that moves a free body where there is any.
+    fn loosened(&self) -> Answer {
+        let first = self.level();
+        let moves = |r: &[Rat]| self.loose.iter().any(|&c| !r[c].is_zero());
+        if !matches!(&first, Answer::Ray(r) if !moves(r)) {
+            return first;
+        }
+        let mut model = self.level_model();
+        for &c in &self.loose {
+            for cost in [Rat::one(), Rat::from(-1)] {
+                model.columns[c].cost = cost;
+                match self.best(&model) {
+                    Answer::None => {}
+                    other => return other,
+                }
+            }
+            model.columns[c].cost = Rat::zero();
+        }
+        first
+    }
+
+    /// The cone within a box, with sum 0 as its last row.
+    fn level_model(&self) -> Model {
         let unit = Range {
             lower: Some(Rat::from(-1)),
             upper: Some(Rat::one()),
         };
         let mut model = self.model(&unit);
+        let sum = model.add_row("sum", Range::fixed(Rat::zero()));
+        for &c in &self.counted {
+            model.set(sum, c, Rat::one());
+        }
+        model
+    }
+
+    fn level(&self) -> Answer {
+        let mut model = self.level_model();
         for row in &self.rows {
             for (c, v) in row {
                 model.columns[*c].cost = &model.columns[*c].cost + v;
             }
-        }
-        let sum = model.add_row("sum", Range::fixed(Rat::zero()));
-        for &c in &self.counted {
-            model.set(sum, c, Rat::one());
         }
         match self.best(&model) {
             Answer::None => {}
@@ -250,29 +284,66 @@ pub struct Separation {
     pub velocities: Option<Vec<[Rat; 3]>>,
     /// Where the direction rotates nothing: whether it clears everything for all time.
     pub clear: Option<bool>,
+    /// Whether the direction takes something apart: it moves a body that no pin holds, and is not
+    /// known to collide.
+    pub parts: bool,
+}
+
+/// What was decided of a structure.
+#[derive(Clone, Debug)]
+pub struct Separated {
+    /// The three signs.
+    pub cases: [Separation; 3],
+    /// Constraints that hold the bodies where they stand; with none, nothing is within epsilon of
+    /// anything.
+    pub rows: usize,
+    /// Where a direction of the three signs collides and none is clear: a body and a translation of it alone that
+    /// clears everything for all time.
+    pub way_out: Option<(usize, Vec2)>,
+}
+
+impl Separated {
+    /// `comes-apart` if a direction takes something apart; `holds` if the near constraints leave no
+    /// free body any direction; `undecided` if a limit was reached, or if directions are left by
+    /// the near constraints but one collides farther on and none was found that is clear for all
+    /// time. Where all directions turn bodies, it is a statement to first order, as PF's.
+    pub fn verdict(&self) -> &'static str {
+        let any = |f: fn(&Separation) -> bool| self.cases.iter().any(f);
+        if self.way_out.is_some() || any(|c| c.parts && c.clear.is_some()) {
+            "comes-apart"
+        } else if any(|c| c.clear == Some(false)) {
+            "undecided"
+        } else if any(|c| c.parts) {
+            "comes-apart"
+        } else if any(|c| c.answer == Answer::Undecided) {
+            "undecided"
+        } else {
+            "holds"
+        }
+    }
 }
 
 /// Decides for each of the three signs whether a structure comes apart. With `translations`
 /// rotations are left out. `limit` bounds each program.
 ///
-/// Cost: at most four linear programs; for directions without rotations the product of the edges
-/// of every two bodies that part.
-pub fn separate(
-    structure: &Structure,
-    translations: bool,
-    limit: Option<Duration>,
-) -> [Separation; 3] {
-    let structure = held(structure);
+/// Cost: at most four linear programs, and where pinned bodies alone turn two more for every freedom
+/// of the free ones; for directions without rotations the product of the edges of every two bodies
+/// that part. Where one collides and none is clear, a search for one body's way out like [`sequence`]'s.
+pub fn separate(structure: &Structure, translations: bool, limit: Option<Duration>) -> Separated {
+    let file = held(structure);
+    let fit = Fitted::of(&file);
+    let structure = fit.as_ref().map_or(&file, |f| &f.structure);
+    let unit = fit.as_ref().map_or_else(Rat::one, Fitted::length);
     let options = FlexOptions::default();
-    let run = Run::new(&structure, &options);
+    let run = Run::new(structure, &options);
     let poses = run.scaffold.place(&run.scaffold.start);
     let selection = run.selection(&poses, false);
     let (_, rows) = run.rows(&selection, &poses);
     let cone = cone_of(&run, &rows, translations, limit);
-    let polygons = placed(&structure);
-    [Sum::Positive, Sum::Negative, Sum::Zero].map(|sum| {
+    let polygons = placed(structure);
+    let cases = [Sum::Positive, Sum::Negative, Sum::Zero].map(|sum| {
         let answer = cone.ray(sum);
-        let velocities = match &answer {
+        let mut velocities = match &answer {
             Answer::Ray(r) => Some(
                 (0..structure.bodies.len())
                     .map(|b| {
@@ -294,13 +365,45 @@ pub fn separate(
                         .all(|b| escapes(&polygons[b], &polygons[a], &(&way(b) - &way(a))))
                 })
             });
+        let free = |b: usize| structure.bodies[b].hold == Hold::Free;
+        let moves = |v: &[[Rat; 3]]| {
+            let each = v.iter().enumerate();
+            each.filter(|(b, _)| free(*b))
+                .any(|(_, d)| d.iter().any(|x| !x.is_zero()))
+        };
+        let parts = clear != Some(false) && velocities.as_ref().is_some_and(|v| moves(v));
+        if let Some(all) = velocities.as_mut().filter(|_| fit.is_some()) {
+            in_units(all, &unit);
+        }
         Separation {
             sum,
             answer,
             velocities,
             clear,
+            parts,
         }
-    })
+    });
+    let collides = cases.iter().any(|c| c.clear == Some(false));
+    let way_out = (collides && !cases.iter().any(|c| c.parts && c.clear.is_some()))
+        .then(|| sequence(&file, limit).removed.into_iter().next());
+    Separated {
+        cases,
+        rows: rows.len(),
+        way_out: way_out.flatten(),
+    }
+}
+
+/// Velocities whose lengths are in multiples of `unit`, in the file's, the largest again 1 in size.
+fn in_units(all: &mut [[Rat; 3]], unit: &Rat) {
+    for [x, y, _] in all.iter_mut() {
+        (*x, *y) = (&*x * unit, &*y * unit);
+    }
+    let largest = all.iter().flatten().map(Rat::abs).max();
+    if let Some(top) = largest.filter(|t| !t.is_zero()) {
+        for v in all.iter_mut().flatten() {
+            *v = &*v / &top;
+        }
+    }
 }
 
 /// The structure with its first body fixed where none is held.
@@ -324,6 +427,7 @@ fn cone_of(run: &Run<'_>, rows: &[Row], translations: bool, limit: Option<Durati
         let [x, y, theta] = scaffold.column(body);
         if *form == Form::Free {
             cone.counted.extend(x.into_iter().chain(y));
+            cone.loose.extend(x.into_iter().chain(y).chain(theta));
         }
         if let Some(t) = theta {
             turning[t] = true;
@@ -358,11 +462,21 @@ pub struct SeparateDocument {
     pub translations: bool,
     /// `comes-apart`, `holds` or `undecided`.
     pub verdict: &'static str,
+    /// Constraints that hold the bodies where they stand; with 0, nothing is within epsilon of
+    /// anything.
+    pub rows: usize,
+    /// Why it is undecided, or what the verdict leaves out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<&'static str>,
     /// The three signs.
     pub cases: Vec<CaseDocument>,
+    /// Where a direction found collides and none is clear: a body and a translation of it alone, as two rationals,
+    /// that clears everything for all time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub way_out: Option<(String, [String; 2])>,
     /// Bodies removed one after the other, where asked.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub sequence: Option<super::sequence::SequenceDocument>,
+    pub sequence: Option<SequenceDocument>,
 }
 
 /// One sign.
@@ -370,7 +484,7 @@ pub struct SeparateDocument {
 pub struct CaseDocument {
     /// The sign of the sum of x and y velocities.
     pub sum: Sum,
-    /// `ray`, `none` or `undecided`.
+    /// `ray` (the near constraints leave a direction), `none` or `undecided`.
     pub answer: &'static str,
     /// Bodies that move, and how: x, y, θ.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -378,28 +492,39 @@ pub struct CaseDocument {
     /// Without rotations: whether the motion is clear of everything for all time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clear: Option<bool>,
+    /// Whether the direction takes something apart: it moves a body that no pin holds, and is not
+    /// known to collide.
+    pub parts: bool,
 }
 
 impl SeparateDocument {
     /// The document of a decision.
-    pub fn new(
-        structure: &Structure,
-        translations: bool,
-        cases: &[Separation; 3],
-    ) -> SeparateDocument {
-        let found = cases.iter().any(|c| matches!(c.answer, Answer::Ray(_)));
-        let open = cases.iter().any(|c| c.answer == Answer::Undecided);
+    pub fn new(structure: &Structure, translations: bool, found: &Separated) -> SeparateDocument {
+        let cases = &found.cases;
+        let verdict = found.verdict();
         let free = structure.bodies.iter().all(|b| b.hold == Hold::Free);
         SeparateDocument {
             schema: "snapfit.separate/1",
             structure: structure.name.clone(),
             held: free.then(|| structure.bodies[0].name.clone()),
             translations,
-            verdict: match (found, open) {
-                (true, _) => "comes-apart",
-                (false, true) => "undecided",
-                (false, false) => "holds",
+            verdict,
+            rows: found.rows,
+            reason: match verdict {
+                "undecided" if cases.iter().any(|c| c.clear == Some(false)) => Some(
+                    "what is within epsilon leaves it free to go, but no direction was found that \
+                     does not collide farther on: a larger epsilon may decide it",
+                ),
+                "undecided" => Some("a limit was reached"),
+                "holds" if cases.iter().any(|c| c.velocities.is_some()) => {
+                    Some("pinned bodies turn about their pins, and nothing else moves")
+                }
+                _ => None,
             },
+            way_out: found.way_out.as_ref().map(|(b, d)| {
+                let name = structure.bodies[*b].name.clone();
+                (name, [d.x.to_string(), d.y.to_string()])
+            }),
             cases: cases
                 .iter()
                 .map(|c| CaseDocument {
@@ -418,9 +543,20 @@ impl SeparateDocument {
                         .map(|(v, b)| (b.name.clone(), [0, 1, 2].map(|k| Num::of_rat(&v[k]))))
                         .collect(),
                     clear: c.clear,
+                    parts: c.parts,
                 })
                 .collect(),
             sequence: None,
         }
+    }
+
+    /// Adds bodies removed one after the other: any that is taken away for ever shows that the
+    /// structure comes apart, also where near constraints ask more than they need to (where corners
+    /// touch).
+    pub fn with_sequence(&mut self, sequence: SequenceDocument) {
+        if !sequence.removed.is_empty() {
+            (self.verdict, self.reason) = ("comes-apart", None);
+        }
+        self.sequence = Some(sequence);
     }
 }

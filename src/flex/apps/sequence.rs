@@ -9,6 +9,7 @@
 
 use super::escape::escapes;
 use super::separate::{Answer, Cone, Sum, held};
+use crate::flex::fit::Fitted;
 use crate::flex::shape::placed;
 use crate::flex::step::{FlexOptions, Run};
 use crate::flex::{Hold, Structure};
@@ -45,6 +46,8 @@ struct Guard {
 pub fn sequence(structure: &Structure, limit: Option<Duration>) -> Sequence {
     let deadline = limit.and_then(|t| Instant::now().checked_add(t));
     let structure = held(structure);
+    // Directions of translation have no unit.
+    let structure = Fitted::of(&structure).map_or(structure, |f| f.structure);
     let options = FlexOptions::default();
     let run = Run::new(&structure, &options);
     let poses = run.scaffold.place(&run.scaffold.start);
@@ -104,6 +107,7 @@ fn way_out(body: usize, guards: &[Guard], polygons: &[Polygon], inside: &[bool])
             .map(|row| row.into_iter().filter(|e| !e.1.is_zero()).collect())
             .collect(),
         counted: vec![0, 1],
+        loose: vec![0, 1],
         time_limit: None,
     };
     let signs = [Sum::Positive, Sum::Negative, Sum::Zero];

@@ -30,6 +30,7 @@ mod above;
 mod joint;
 mod net;
 
+use super::fit::Fitted;
 use super::model::{Form, Scaffold};
 use super::types::Structure;
 use crate::number::Rat;
@@ -62,6 +63,16 @@ pub fn outer_bound(
     structure: &Structure,
     time_limit: Option<std::time::Duration>,
 ) -> Result<OuterBound, String> {
+    if let Some(fit) = Fitted::of(structure) {
+        let own = outer_bound(&fit.structure, time_limit)?;
+        let unit = fit.weight();
+        return Ok(OuterBound {
+            value: &own.value * &unit,
+            relaxed: &own.relaxed * &unit,
+            loss: &own.loss * &unit,
+            ..own
+        });
+    }
     let scaffold = Scaffold::new(structure);
     if scaffold.forms.contains(&Form::Pinned) {
         return Err("a pinned body is not bounded here".to_owned());

@@ -21,6 +21,22 @@ pub(super) struct Weighted {
     dtheta: Rat,
 }
 
+/// Bits of a row's longest coefficient past which it is divided by a power of two.
+const LONG: u64 = 500;
+/// A rotation of 2 to this in a step is no limit: 2 tan(θ/2) so large is a turn by π.
+const TURNS: u64 = 64;
+
+impl Row {
+    /// Whether doubles may not hold its coefficients.
+    pub(crate) fn is_long(&self) -> bool {
+        let each = self
+            .normal
+            .iter()
+            .chain([&self.theta1, &self.theta2, &self.d0]);
+        each.map(Int::bits).any(|bits| bits > LONG)
+    }
+}
+
 impl Scaffold {
     /// The weighted sum of displacements since the start, exactly. An angle counts as twice the
     /// tangent of half its change, which is the angle up to its third power.
@@ -131,6 +147,7 @@ impl Scaffold {
         let mut model = Model::new("flex");
         model.maximise = true;
         let costs = self.costs(poses, stations);
+        let no_limit = Rat::from(Int::one().shl(TURNS));
         let lines: HashMap<usize, &Rat> = self.gathered.iter().map(|(b, x)| (*b, x)).collect();
         for (body, cost) in costs.into_iter().enumerate() {
             let names = ["x", "y", "t"];
@@ -138,7 +155,12 @@ impl Scaffold {
                 if column.is_some() {
                     let left = lines.get(&body).map(|x| *x - &poses[body].place.x);
                     let own = self.turn_limits.as_ref().map(|all| &all[body]);
-                    let limit = self.rotation_limit.iter().chain(own).min();
+                    let asked = self.rotation_limit.as_ref();
+                    let limit = asked
+                        .filter(|v| **v < no_limit)
+                        .into_iter()
+                        .chain(own)
+                        .min();
                     let range = match (limit, k) {
                         // Not past the line.
                         (_, 0) => match left {
@@ -157,10 +179,18 @@ impl Scaffold {
             }
         }
         for (k, row) in rows.iter().enumerate() {
-            let at_least = Range::at_least(Rat::from(-&row.d0));
-            let r = model.add_row(&format!("r{k}"), at_least);
-            for (c, v) in self.entries(row) {
-                model.set(r, c, Rat::from(v));
+            let entries = self.entries(row);
+            let own = entries.iter().map(|(_, v)| v.bits()).max().unwrap_or(0);
+            // A row is free up to a positive factor; this one keeps it within what doubles hold,
+            // which propose the basis.
+            let unit = (own > LONG).then(|| Int::one().shl(own));
+            let part = |v: Int| match &unit {
+                Some(unit) => Rat::new(v, unit.clone()),
+                None => Rat::from(v),
+            };
+            let r = model.add_row(&format!("r{k}"), Range::at_least(part(-&row.d0)));
+            for (c, v) in entries {
+                model.set(r, c, part(v));
             }
         }
         model
