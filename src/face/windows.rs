@@ -217,7 +217,9 @@ impl Tracer<'_> {
     /// Whether some of those that are near a window, and so perhaps all, cannot be told from the item in doubles
     /// anywhere: however small its halves, none would have fewer.
     fn glued(&self, item: u32, (from, to): (f64, f64), near: &[u32]) -> bool {
-        let Carrier::Graph(c) = self.items[item as usize].carrier else {
+        // A crowd that is known of beforehand is not searched for, and it lies in one place.
+        let (Carrier::Graph(c), false) = (self.items[item as usize].carrier, near.is_empty())
+        else {
             return false;
         };
         // Not where halves begin, which are places that data like.
