@@ -331,8 +331,8 @@ impl Tracer<'_> {
         v
     }
 
-    /// Tells a vertex on one item to a twin of it that passes over the same point, and to the pairs that the
-    /// twin makes with the others there: overlapping arcs meet each other at their ends only.
+    /// Tells a vertex on one item, whose items are marked, to a twin of it that passes over the same point, and to
+    /// the pairs that the twin makes with the others there: overlapping arcs meet each other at their ends only.
     fn share(&mut self, v: u32, twin: u32, hits: &[Hit]) {
         let t = self.items[twin as usize];
         let place = match t.carrier {
@@ -342,11 +342,20 @@ impl Tracer<'_> {
         if place != Some(Place::Inside) {
             return;
         }
-        self.mark_linked(v);
         self.link_marked(v, twin, Place::Inside);
         for h in hits {
-            let color = self.items[h.other as usize].color;
+            let other = &self.items[h.other as usize];
+            let color = other.color;
             if h.other == twin || h.cross == NONE || color != 0 && color == t.color {
+                continue;
+            }
+            // Where neither ends, two on one curve do not meet.
+            let along = match (t.carrier, other.carrier) {
+                (Carrier::Graph(c), Carrier::Graph(d)) => c == d,
+                (Carrier::Vertical(..), Carrier::Vertical(..)) => true,
+                _ => false,
+            };
+            if along && h.there == Place::Inside {
                 continue;
             }
             let (s, e) = self.meet(twin, h.other);
